@@ -17,7 +17,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kMemory:
       return more_memory(facts);
     case Remedy::kScratchFolder:
-      return "; choose another folder with tmpdir";
+      return "; choose another folder with scratch_folder";
     case Remedy::kScratchLimit:
       return "; raise max_tmp or memory";
     case Remedy::kRasterSize:
@@ -38,7 +38,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kPointLattice:
       return "; choose another scale or offset";
     case Remedy::kDistrustHeaders:
-      return "; with distrust_headers=True all points are read first, and may lie anywhere";
+      return "; with trust_headers=False all points are read first, and may lie anywhere";
     case Remedy::kColumns:
       return "; say which columns are x, y and z, as columns=(3, 2, 4)";
     case Remedy::kUnknownCrs:

@@ -10,7 +10,7 @@
 #include "python/attributes.h"
 #include "python/bindings.h"
 #include "python/block_stream.h"
-#include "python/figures.h"
+#include "python/statistics.h"
 
 namespace spillway::python {
 namespace {
@@ -53,7 +53,7 @@ void bind_blocks(py::module_& module) {
       .def("close", &BlockStream::close)
       .def_property_readonly("report", [](const BlockStream& stream) -> py::object {
         if (!stream.report()) return py::none();
-        return figures_of(*stream.report(), stream.run());
+        return statistics_of(*stream.report(), stream.run());
       });
 }
 

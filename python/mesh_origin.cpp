@@ -15,7 +15,7 @@ namespace {
 void refuse_choice_of_heights(const TriangulateOptions& how, const PointsHeader& points) {
   if (how.heights == Heights::kFirst || points.coordinates == 3) return;
   throw Error(ErrorCode::kInvalidArgument,
-              "duplicates has no effect on points without z: leave it out");
+              "heights has no effect on points without z: leave it out");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ void bind_triangulate_options(py::module_& module) {
       .def_readwrite("trust_headers", &TriangulateOptions::trust_headers)
       .def_readwrite("resume_folder", &TriangulateOptions::resume_folder)
       .def_readwrite("checkpoint_seconds", &TriangulateOptions::checkpoint_seconds);
-  bind_choice(bound, "duplicates", &TriangulateOptions::heights,
+  bind_choice(bound, "heights", &TriangulateOptions::heights,
               {"first", "lowest", "highest", "mean"});
   bind_choice(bound, "division", &TriangulateOptions::division,
               {"least-border", "longest", "cycling", "constant"});

@@ -13,9 +13,9 @@
 
 #include "python/attributes.h"
 #include "python/bindings.h"
-#include "python/figures.h"
 #include "python/inputs.h"
 #include "python/run.h"
+#include "python/statistics.h"
 
 namespace spillway::python {
 namespace {
@@ -26,22 +26,22 @@ constexpr PhaseShare kPhasesOfSorting[] = {
 constexpr PhaseShare kPhasesOfGrid[] = {{"measure", 0, 0.4}, {"generate", 0.4, 1}};
 constexpr PhaseShare kPhasesOfGeneration[] = {{"generate", 0, 1}};
 
-py::dict figures_of(const PointConversion& done, const Run& run) {
-  py::dict figures;
-  figures["written"] = done.written;
-  figures["filters"] = python::figures_of(done.points);
-  figures["skipped_files"] = python::figures_of(done.skipped_files);
-  figures["rounded"] = done.rounded;
-  figures["scale"] = done.rounded ? py::object(triple_of(done.scale)) : py::none();
-  figures["offset"] = done.rounded ? py::object(triple_of(done.offset)) : py::none();
-  figures["farthest"] = done.farthest;
-  figures["adds_heights"] = done.adds_heights;
-  figures["lost"] = done.lost;
-  figures["cells"] = done.cells;
-  figures["spilled_points"] = done.spilled_points;
-  figures["spilled_bytes"] = done.spilled_bytes;
-  figures["seconds"] = run.seconds();
-  return figures;
+py::dict statistics_of(const PointConversion& done, const Run& run) {
+  py::dict statistics;
+  statistics["written"] = done.written;
+  statistics["filters"] = python::statistics_of(done.points);
+  statistics["skipped_files"] = python::statistics_of(done.skipped_files);
+  statistics["rounded"] = done.rounded;
+  statistics["scale"] = done.rounded ? py::object(triple_of(done.scale)) : py::none();
+  statistics["offset"] = done.rounded ? py::object(triple_of(done.offset)) : py::none();
+  statistics["farthest"] = done.farthest;
+  statistics["adds_heights"] = done.adds_heights;
+  statistics["lost"] = done.lost;
+  statistics["cells"] = done.cells;
+  statistics["spilled_points"] = done.spilled_points;
+  statistics["spilled_bytes"] = done.spilled_bytes;
+  statistics["seconds"] = run.seconds();
+  return statistics;
 }
 
 py::dict convert_points(Run& run, const Inputs& inputs, const PointOptions& options,
@@ -55,7 +55,7 @@ py::dict convert_points(Run& run, const Inputs& inputs, const PointOptions& opti
     const auto points = open_inputs(inputs, options, run.context(), std::move(columns));
     done = convert(*points, *file, run.context());
   });
-  return figures_of(done, run);
+  return statistics_of(done, run);
 }
 
 py::dict generate(Run& run, const GenerateOptions& options, const std::string& output,

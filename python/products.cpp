@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "python/bindings.h"
-#include "python/figures.h"
 #include "python/mesh_origin.h"
+#include "python/statistics.h"
 #include "python/text.h"
 
 namespace spillway::python {
 namespace {
 
-/// Makes a sink, sends it the mesh, and returns it with the run's figures.
+/// Makes a sink, sends it the mesh, and returns it with the run's statistics.
 template <typename Make>
 auto send(Run& run, const MeshOrigin& origin, const Make& make) {
   decltype(make()) sink;
@@ -26,7 +26,7 @@ auto send(Run& run, const MeshOrigin& origin, const Make& make) {
     sink = make();
     report = origin.send(*sink, run);
   });
-  return std::pair(std::move(sink), figures_of(report, run));
+  return std::pair(std::move(sink), statistics_of(report, run));
 }
 
 py::dict mesh(Run& run, const MeshOrigin& origin, const std::string& output,
@@ -34,57 +34,57 @@ py::dict mesh(Run& run, const MeshOrigin& origin, const std::string& output,
   return send(run, origin, [&] { return create_mesh(output, options, run.context()); }).second;
 }
 
-void add_raster(const DemReport& raster, py::dict& figures) {
-  figures["columns"] = raster.columns;
-  figures["rows"] = raster.rows;
-  figures["resolution"] = raster.resolution;
-  figures["west"] = raster.west;
-  figures["north"] = raster.north;
-  figures["bands"] = raster.bands;
-  figures["pixels_with_data"] = raster.pixels_with_data;
-  figures["closed_tiles"] = raster.closed_tiles;
-  figures["spilled_pixel_bytes"] = raster.spilled_bytes;
+void add_raster(const DemReport& raster, py::dict& statistics) {
+  statistics["columns"] = raster.columns;
+  statistics["rows"] = raster.rows;
+  statistics["resolution"] = raster.resolution;
+  statistics["west"] = raster.west;
+  statistics["north"] = raster.north;
+  statistics["bands"] = raster.bands;
+  statistics["pixels_with_data"] = raster.pixels_with_data;
+  statistics["closed_tiles"] = raster.closed_tiles;
+  statistics["spilled_pixel_bytes"] = raster.spilled_bytes;
 }
 
 py::dict dem(Run& run, const MeshOrigin& origin, const std::string& output,
              const DemOptions& options) {
-  auto [sink, figures] =
+  auto [sink, statistics] =
       send(run, origin, [&] { return create_dem(output, options, run.context()); });
-  add_raster(sink->report(), figures);
-  return figures;
+  add_raster(sink->report(), statistics);
+  return statistics;
 }
 
 py::tuple dem_in_memory(Run& run, const MeshOrigin& origin, const DemOptions& options) {
   DemPixels pixels;
-  auto [sink, figures] =
+  auto [sink, statistics] =
       send(run, origin, [&] { return create_dem(pixels, options, run.context()); });
-  add_raster(sink->report(), figures);
-  return py::make_tuple(figures, array_of(std::move(pixels.values)), text_of(pixels.crs));
+  add_raster(sink->report(), statistics);
+  return py::make_tuple(statistics, array_of(std::move(pixels.values)), text_of(pixels.crs));
 }
 
 py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,
                   const ContourOptions& options) {
-  auto [sink, figures] =
+  auto [sink, statistics] =
       send(run, origin, [&] { return create_contours(output, options, run.context()); });
   const ContourReport& lines = sink->report();
-  figures["lines"] = lines.lines;
-  figures["line_points"] = lines.points;
-  figures["lowest"] = lines.lowest;
-  figures["highest"] = lines.highest;
-  figures["spilled_line_bytes"] = lines.spilled_bytes;
-  return figures;
+  statistics["lines"] = lines.lines;
+  statistics["line_points"] = lines.points;
+  statistics["lowest"] = lines.lowest;
+  statistics["highest"] = lines.highest;
+  statistics["spilled_line_bytes"] = lines.spilled_bytes;
+  return statistics;
 }
 
 py::dict picture(Run& run, const MeshOrigin& origin, const std::string& output,
                  const PictureOptions& options) {
-  auto [sink, figures] =
+  auto [sink, statistics] =
       send(run, origin, [&] { return create_picture(output, options, run.context()); });
   const PictureReport& view = sink->report();
-  figures["columns"] = view.columns;
-  figures["rows"] = view.rows;
-  figures["description"] = view.description;
-  figures["edges_too_small"] = view.edges_too_small;
-  return figures;
+  statistics["columns"] = view.columns;
+  statistics["rows"] = view.rows;
+  statistics["description"] = view.description;
+  statistics["edges_too_small"] = view.edges_too_small;
+  return statistics;
 }
 
 }  // namespace

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "python/bindings.h"
-#include "python/figures.h"
 #include "python/inputs.h"
 #include "python/run.h"
+#include "python/statistics.h"
 #include "python/text.h"
 
 namespace spillway::python {
@@ -35,34 +35,34 @@ py::list texts_of(const std::vector<std::string>& lines) {
   return texts;
 }
 
-void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& figures) {
-  figures["scale"] = lattice ? py::object(triple_of(lattice->scale)) : py::none();
-  figures["offset"] = lattice ? py::object(triple_of(lattice->offset)) : py::none();
+void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& statistics) {
+  statistics["scale"] = lattice ? py::object(triple_of(lattice->scale)) : py::none();
+  statistics["offset"] = lattice ? py::object(triple_of(lattice->offset)) : py::none();
 }
 
 py::dict points_info(Run& run, const std::string& path, const PointOptions& options) {
   PointsInfo info;
   run.expect(kPhasesOfInfo);
   run.work([&] { info = describe_points(path, options, run.context()); });
-  py::dict figures;
-  figures["format"] = info.format;
-  figures["version"] = text_or_none(info.version);
-  figures["point_format"] =
+  py::dict statistics;
+  statistics["format"] = info.format;
+  statistics["version"] = text_or_none(info.version);
+  statistics["point_format"] =
       info.point_format < 0 ? py::object(py::none()) : py::object(py::int_(info.point_format));
-  figures["coordinates"] = info.coordinates;
-  figures["points"] = info.counts.kept();
-  figures["filters"] = figures_of(info.counts);
-  figures["extent"] = extent_of(info.extent);
-  figures["header_box"] = extent_of(info.header_box);
-  figures["points_outside"] =
+  statistics["coordinates"] = info.coordinates;
+  statistics["points"] = info.counts.kept();
+  statistics["filters"] = statistics_of(info.counts);
+  statistics["extent"] = extent_of(info.extent);
+  statistics["header_box"] = extent_of(info.header_box);
+  statistics["points_outside"] =
       info.header_box ? py::object(py::int_(info.points_outside)) : py::object(py::none());
-  add_lattice(info.lattice, figures);
-  figures["crs"] = text_or_none(info.crs);
-  figures["crs_note"] = text_or_none(info.crs_note);
-  figures["software"] = text_or_none(info.software);
-  figures["cells"] = info.cells;
-  figures["attributes"] = figures_of(info.attributes);
-  return figures;
+  add_lattice(info.lattice, statistics);
+  statistics["crs"] = text_or_none(info.crs);
+  statistics["crs_note"] = text_or_none(info.crs_note);
+  statistics["software"] = text_or_none(info.software);
+  statistics["cells"] = info.cells;
+  statistics["attributes"] = statistics_of(info.attributes);
+  return statistics;
 }
 
 py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options) {
@@ -70,41 +70,42 @@ py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options
   run.expect(kPhasesOfInfo);
   run.work([&] { info = describe_mesh(path, options, run.context()); });
   const MeshTotals& totals = info.totals;
-  py::dict figures;
-  figures["format"] = info.format;
-  figures["dimension"] = info.dimension;
-  figures["vertices"] = totals.vertices;
-  figures["simplices"] = totals.simplices;
-  figures["hull_facets"] = totals.hull_facets;
-  figures["canonical_hash"] = hash_text(totals.canonical_hash);
-  figures["points"] = info.tells_totals ? py::object(py::int_(totals.points)) : py::none();
-  figures["duplicates"] = info.tells_totals ? py::object(py::int_(totals.duplicates)) : py::none();
-  figures["extent"] = extent_of(info.extent);
-  add_lattice(info.lattice, figures);
-  figures["input_index"] = info.has_input_index;
-  figures["crs"] = text_or_none(info.crs);
-  figures["peak_live_vertices"] = info.peak_live_vertices;
-  figures["attributes"] = figures_of(info.attributes);
-  return figures;
+  py::dict statistics;
+  statistics["format"] = info.format;
+  statistics["dimension"] = info.dimension;
+  statistics["vertices"] = totals.vertices;
+  statistics["simplices"] = totals.simplices;
+  statistics["hull_facets"] = totals.hull_facets;
+  statistics["canonical_hash"] = hash_text(totals.canonical_hash);
+  statistics["points"] = info.tells_totals ? py::object(py::int_(totals.points)) : py::none();
+  statistics["duplicates"] =
+      info.tells_totals ? py::object(py::int_(totals.duplicates)) : py::none();
+  statistics["extent"] = extent_of(info.extent);
+  add_lattice(info.lattice, statistics);
+  statistics["input_index"] = info.has_input_index;
+  statistics["crs"] = text_or_none(info.crs);
+  statistics["peak_live_vertices"] = info.peak_live_vertices;
+  statistics["attributes"] = statistics_of(info.attributes);
+  return statistics;
 }
 
-py::dict figures_of(const CheckReport& report, int dimension) {
-  py::dict figures;
-  figures["dimension"] = dimension;
-  figures["vertices"] = report.vertices;
-  figures["simplices"] = report.simplices;
-  figures["hull_facets"] = report.hull_facets;
-  figures["canonical_hash"] = hash_text(report.canonical_hash);
-  figures["on_lattice"] = report.on_lattice;
-  figures["properties"] = texts_of(report.proved);
-  figures["faults"] = texts_of(report.faults);
-  figures["fault_count"] = report.fault_count;
-  figures["off_lattice"] = report.off_lattice;
-  figures["other_ties"] = report.other_ties;
-  figures["peak_live_vertices"] = report.peak_live_vertices;
-  figures["peak_open_facets"] = report.peak_open_facets;
-  figures["filters"] = python::figures_of(report.points);
-  return figures;
+py::dict statistics_of(const CheckReport& report, int dimension) {
+  py::dict statistics;
+  statistics["dimension"] = dimension;
+  statistics["vertices"] = report.vertices;
+  statistics["simplices"] = report.simplices;
+  statistics["hull_facets"] = report.hull_facets;
+  statistics["canonical_hash"] = hash_text(report.canonical_hash);
+  statistics["on_lattice"] = report.on_lattice;
+  statistics["properties"] = texts_of(report.proved);
+  statistics["faults"] = texts_of(report.faults);
+  statistics["fault_count"] = report.fault_count;
+  statistics["off_lattice"] = report.off_lattice;
+  statistics["other_ties"] = report.other_ties;
+  statistics["peak_live_vertices"] = report.peak_live_vertices;
+  statistics["peak_open_facets"] = report.peak_open_facets;
+  statistics["filters"] = python::statistics_of(report.points);
+  return statistics;
 }
 
 py::dict check_mesh(Run& run, const std::string& path, const MeshOptions& options,
@@ -124,7 +125,7 @@ py::dict check_mesh(Run& run, const std::string& path, const MeshOptions& option
     }
     report = check(*mesh, {.any_delaunay = any_delaunay}, run.context(), points.get());
   });
-  return figures_of(report, dimension);
+  return statistics_of(report, dimension);
 }
 
 }  // namespace

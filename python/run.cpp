@@ -58,7 +58,7 @@ void bind_run(py::module_& module) {
   py::class_<Run, std::shared_ptr<Run>>(module, "Run")
       .def(py::init<const std::string&, unsigned, const std::string&, const std::string&,
                     const py::object&, bool>(),
-           py::arg("memory"), py::arg("threads"), py::arg("tmpdir"), py::arg("max_tmp"),
+           py::arg("memory"), py::arg("threads"), py::arg("scratch_folder"), py::arg("max_tmp"),
            py::arg("progress"), py::arg("explains"));
 }
 

@@ -9,39 +9,41 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// A fault, of the input if nothing else is said. The message is one line that says what is wrong,
 /// where (file, byte, line or point), and what to do about it; the facts say what helps and depends
 /// on how the library was called.
-class Error : public spillway::Error {
+class Failure : public Error {
  public:
-  explicit Error(const std::string& message, ErrorCode code = ErrorCode::kBadInput,
-                 ErrorFacts facts = {})
-      : spillway::Error(code, message, std::move(facts)) {}
+  explicit Failure(const std::string& message, ErrorCode code = ErrorCode::kBadInput,
+                   ErrorFacts facts = {})
+      : Error(code, message, std::move(facts)) {}
 };
 
 /// Several faults at once, each with a line of its own.
-class ErrorList : public Error {
+class ErrorList : public Failure {
  public:
   /// `heading` is a message, too: it says how many there are.
-  ErrorList(const std::string& heading, std::vector<Error> faults)
-      : Error(joined(heading, faults), faults.front().code(), faults.front().facts()),
+  ErrorList(const std::string& heading, std::vector<Failure> faults)
+      : Failure(joined(heading, faults), faults.front().code(), faults.front().facts()),
         heading_(heading),
         faults_(std::move(faults)) {}
 
   [[nodiscard]] const std::string& heading() const { return heading_; }
-  [[nodiscard]] const std::vector<Error>& faults() const { return faults_; }
+  [[nodiscard]] const std::vector<Failure>& faults() const { return faults_; }
 
  private:
-  static std::string joined(std::string text, const std::vector<Error>& faults) {
+  static std::string joined(std::string text, const std::vector<Failure>& faults) {
     text += ':';
-    for (const Error& fault : faults) text += std::string("\n  ") + fault.what();
+    for (const Failure& fault : faults) text += std::string("\n  ") + fault.what();
     return text;
   }
 
   std::string heading_;
-  std::vector<Error> faults_;
+  std::vector<Failure> faults_;
 };
 
 constexpr FilePlace at_byte(std::uint64_t byte) { return {PlaceUnit::kByte, byte}; }
@@ -61,7 +63,7 @@ struct FileSpot {
 };
 
 /// A file is not what it should be.
-class BadInput : public Error {
+class BadInput : public Failure {
  public:
   /// The message is "FILE: WHAT". The place is a fact; WHAT names it in its own words.
   BadInput(const std::string& file, const std::string& what, FilePlace place = {},
@@ -73,7 +75,7 @@ class BadInput : public Error {
 };
 
 /// What is given to be written to a file is not what its format holds, or not what was announced.
-class CannotWrite : public Error {
+class CannotWrite : public Failure {
  public:
   /// The message is "cannot write FILE: WHAT". The place is that of the point, vertex or simplex.
   CannotWrite(const std::string& file, const std::string& what,
@@ -82,14 +84,14 @@ class CannotWrite : public Error {
 };
 
 /// The library was called with what no call can use.
-class InvalidArgument : public Error {
+class InvalidArgument : public Failure {
  public:
   explicit InvalidArgument(const std::string& message, ErrorFacts facts = {})
       : InvalidArgument(message, ErrorCode::kInvalidArgument, std::move(facts)) {}
 
  protected:
   InvalidArgument(const std::string& message, ErrorCode code, ErrorFacts facts)
-      : Error(message, code, std::move(facts)) {}
+      : Failure(message, code, std::move(facts)) {}
 };
 
 /// The memory limit is below what any call of this kind takes.
@@ -101,25 +103,25 @@ class TooSmallLimit : public InvalidArgument {
 
 /// The system refuses to read, to write or to create `file`, for the reason that `system_error`
 /// names; the message says so in words.
-class SystemRefusal : public Error {
+class SystemRefusal : public Failure {
  public:
   SystemRefusal(const std::string& message, std::string file, int system_error,
                 Remedy remedy = Remedy::kNone)
-      : Error(message, ErrorCode::kInputOutput,
-              {.file = std::move(file), .system_error = system_error, .remedy = remedy}) {}
+      : Failure(message, ErrorCode::kInputOutput,
+                {.file = std::move(file), .system_error = system_error, .remedy = remedy}) {}
 };
 
 /// Whoever called the library asked it to stop.
-class Interrupted : public Error {
+class Interrupted : public Failure {
  public:
-  Interrupted() : Error("the run was interrupted", ErrorCode::kInterrupted) {}
+  Interrupted() : Failure("the run was interrupted", ErrorCode::kInterrupted) {}
 };
 
 /// The reader at the other end of a pipe went away.
-class ClosedPipe : public Error {
+class ClosedPipe : public Failure {
  public:
   ClosedPipe()
-      : Error("the reader of the output closed its end of the pipe", ErrorCode::kClosedPipe) {}
+      : Failure("the reader of the output closed its end of the pipe", ErrorCode::kClosedPipe) {}
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

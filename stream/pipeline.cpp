@@ -15,7 +15,7 @@
 #include "stream/source/false_header.h"
 #include "stream/tiles/regions/region_plan.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// How full cells of a plan are meant to get, of what a tile may have: densities differ.
@@ -50,7 +50,7 @@ Trust trust_in(PointStream& source, int dimension, const RunSetup& setup) {
   if (capacity == 0) {
     const MemoryPlan memory = plan_memory(setup.budget.limit(), dimension, options.threads,
                                           setup.budget.whole(), true, options.record_size);
-    capacity = tile_capacity_for(source.expected().value_or(0), memory);
+    capacity = tile_points_for(source.expected().value_or(0), memory);
   }
   Trust trust;
   trust.plan =
@@ -112,14 +112,14 @@ class RunHere final : public RunPhases<D> {
     if (trust.plan) set_enough(points.expected().value_or(0));
   }
 
-  RunFigures run(std::unique_ptr<StateReader>& restored) {
+  RunStatistics run(std::unique_ptr<StateReader>& restored) {
     with_threads(this->threads(), [&] {
       if (restored) restore(*std::exchange(restored, nullptr));
       this->walk();
     });
     release_base_case_memory();
     if (const auto& trace = options().asked.trace) trace->end({.tasks = engine().task_sums()});
-    return engine().figures();
+    return engine().statistics();
   }
 
  private:
@@ -147,8 +147,8 @@ class RunHere final : public RunPhases<D> {
     const Box<2>& seen = engine().seen_extent();
     if (*trust_.extent == seen || this->setup().sink.extent_holds(seen)) return;
     throw FalseHeader(
-        Error("the points cannot be read again, and headers tell another extent than theirs",
-              ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders}),
+        Failure("the points cannot be read again, and headers tell another extent than theirs",
+                ErrorCode::kBadInput, {.remedy = Remedy::kDistrustHeaders}),
         "headers tell another extent than that of the points",
         FalseHeader::Extent{seen, engine().points()});
   }
@@ -233,7 +233,7 @@ BlockSink* begin_again(const FalseHeader& found, PointStream& source, const RunS
 }  // namespace
 
 template <int D>
-RunFigures triangulate_stream(PointStream& source, BlockSink& blocks, const RunSetup& setup) {
+RunStatistics triangulate_stream(PointStream& source, BlockSink& blocks, const RunSetup& setup) {
   const MemoryLease inputs(setup.budget, source.known_bytes(), "what is known of the inputs");
   Checkpoints* const checkpoints = setup.options.checkpoints;
   std::unique_ptr<StateReader> restored =
@@ -251,14 +251,14 @@ RunFigures triangulate_stream(PointStream& source, BlockSink& blocks, const RunS
   }
 }
 
-void refuse_empty_mesh(const RunFigures& figures, const std::optional<double>& max_edge) {
-  if (figures.mesh.simplices > 0) return;
-  throw Error(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
-                          figures.left_out, max_edge.value_or(0)),
-              ErrorCode::kDegenerateInput);
+void refuse_empty_mesh(const RunStatistics& statistics, const std::optional<double>& max_edge) {
+  if (statistics.mesh.simplices > 0) return;
+  throw Failure(fmt::format("every one of {} simplices has an edge longer than {}: nothing is left",
+                            statistics.left_out, max_edge.value_or(0)),
+                ErrorCode::kDegenerateInput);
 }
 
-template RunFigures triangulate_stream<2>(PointStream&, BlockSink&, const RunSetup&);
-template RunFigures triangulate_stream<3>(PointStream&, BlockSink&, const RunSetup&);
+template RunStatistics triangulate_stream<2>(PointStream&, BlockSink&, const RunSetup&);
+template RunStatistics triangulate_stream<3>(PointStream&, BlockSink&, const RunSetup&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

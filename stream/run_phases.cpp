@@ -1,6 +1,6 @@
 #include "stream/run_phases.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 template <int D>
 void RunPhases<D>::walk() {
@@ -33,4 +33,4 @@ void RunPhases<D>::begin(RunPhase next) {
 template class RunPhases<2>;
 template class RunPhases<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 #include "stream/source/point_stream.h"
 #include "stream/triangulate/tile_engine.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The phases of a run, in their order.
 enum class RunPhase : std::uint8_t {
@@ -67,4 +67,4 @@ class RunPhases : protected Resting {
   std::atomic<RunPhase> phase_ = RunPhase::kRead;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,13 +5,13 @@
 #include <functional>
 #include <optional>
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// The error that `work` throws, if it throws one of the library's.
-inline std::optional<spillway::Error> thrown_by(const std::function<void()>& work) {
+inline std::optional<Error> thrown_by(const std::function<void()>& work) {
   try {
     work();
-  } catch (const spillway::Error& error) {
+  } catch (const Error& error) {
     return error;
   }
   return std::nullopt;
@@ -19,8 +19,8 @@ inline std::optional<spillway::Error> thrown_by(const std::function<void()>& wor
 
 /// What is known of the error that `work` throws; nothing of none.
 inline ErrorFacts facts_of(const std::function<void()>& work) {
-  const std::optional<spillway::Error> error = thrown_by(work);
+  const std::optional<Error> error = thrown_by(work);
   return error ? error->facts() : ErrorFacts{};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -17,7 +17,7 @@
 #include "formats/disk/file_system.h"
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// The calls that are counted and can be made to fail.
 enum class Call { kOpen, kRead, kCreate, kWrite, kRewrite, kCommit };
@@ -42,7 +42,7 @@ class FaultyFileSystem : public FileSystem {
   /// Makes a write past `capacity` throw ClosedPipe instead.
   bool capacity_closes_pipe = false;
 
-  /// Makes the n-th call of this kind (from 1, counted from now) throw Error(message).
+  /// Makes the n-th call of this kind (from 1, counted from now) throw Failure(message).
   void fail(Call call, int n, std::string message = "injected fault") {
     Counter& counter = counters_[static_cast<std::size_t>(call)];
     counter.failing = counter.count + n;
@@ -60,7 +60,7 @@ class FaultyFileSystem : public FileSystem {
   std::unique_ptr<InputFile> open(const std::string& path) override {
     note(Call::kOpen);
     const auto found = files.find(path);
-    if (found == files.end()) throw Error("cannot open " + path + ": No such file or directory");
+    if (found == files.end()) throw Failure("cannot open " + path + ": No such file or directory");
     return std::make_unique<Input>(*this, path, found->second);
   }
 
@@ -155,13 +155,13 @@ class FaultyFileSystem : public FileSystem {
 
   void note(Call call) {
     Counter& counter = counters_[static_cast<std::size_t>(call)];
-    if (++counter.count == counter.failing) throw Error(counter.message);
+    if (++counter.count == counter.failing) throw Failure(counter.message);
   }
 
   void take_space(std::size_t bytes, const std::string& name) {
     if (bytes > capacity) {
       if (capacity_closes_pipe) throw ClosedPipe();
-      throw Error("cannot write " + name + ": No space left on device");
+      throw Failure("cannot write " + name + ": No space left on device");
     }
     capacity -= bytes;
   }
@@ -169,4 +169,4 @@ class FaultyFileSystem : public FileSystem {
   std::array<Counter, 6> counters_;
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

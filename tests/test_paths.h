@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 /// The built command.
 std::string command_path();
@@ -21,4 +21,4 @@ std::filesystem::path shared_data_folder();
 /// The pages of this checkout.
 std::filesystem::path docs_folder();
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

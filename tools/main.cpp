@@ -1,5 +1,5 @@
 #include "tools/program.h"
 
 int main(int argc, char** argv) {
-  return spillway::detail::run_program(argc, argv, spillway::detail::subcommands());
+  return spillway::command::run_program(argc, argv, spillway::command::subcommands());
 }

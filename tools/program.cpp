@@ -7,7 +7,7 @@
 #include "tools/process/rank_job.h"
 #include "tools/process/standard_descriptors.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 int run_program(int argc, char** argv, std::span<const AddSubcommand> table) {
   block_interrupts();
@@ -23,4 +23,4 @@ int run_program(int argc, char** argv, std::span<const AddSubcommand> table) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -10,7 +10,7 @@
 #include "formats/compression/lz4.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Where the head's fields are.
@@ -47,9 +47,9 @@ std::uint64_t checksum_of(const BlockHead& head, const std::byte* stored) {
 void append_block(std::vector<std::byte>& out, std::uint32_t kind,
                   std::span<const std::byte> content) {
   if (content.size() > kLargestBlock) {
-    throw Error(fmt::format("a block of {} bytes is too large to write; the limit is {}",
-                            content.size(), kLargestBlock),
-                ErrorCode::kTooLarge);
+    throw Failure(fmt::format("a block of {} bytes is too large to write; the limit is {}",
+                              content.size(), kLargestBlock),
+                  ErrorCode::kTooLarge);
   }
   BlockHead head;
   head.kind = kind;
@@ -104,4 +104,4 @@ void decode_block(const BlockHead& head, std::span<const std::byte> stored,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What stands before a block's content.
 struct BlockHead {
@@ -39,4 +39,4 @@ BlockHead decode_block_head(std::span<const std::byte, kBlockHeadSize> bytes,
 void decode_block(const BlockHead& head, std::span<const std::byte> stored,
                   std::vector<std::byte>& content, const FileSpot& where);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

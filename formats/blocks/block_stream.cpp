@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 BlockStream::BlockStream(std::unique_ptr<InputBytes> source, const BlockStreamFormat& format,
                          std::function<std::string()> so_far)
@@ -93,4 +93,4 @@ void BlockStream::read_bytes(std::span<std::byte> bytes) {
       at_byte(source_->position()));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,7 +16,7 @@
 #include "src/error.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What streams of Spillway's own have in common.
 struct BlockStreamFormat {
@@ -59,7 +59,7 @@ class BlockStream {
   [[nodiscard]] std::span<const std::byte> content() const { return content_; }
   [[nodiscard]] std::span<const std::byte> left() const { return left_; }
 
-  /// Throws Error if anything follows the block, which is the last one.
+  /// Throws Failure if anything follows the block, which is the last one.
   void expect_end();
 
   /// The file and the byte where the block begins.
@@ -80,4 +80,4 @@ class BlockStream {
   std::span<const std::byte> left_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -19,7 +19,7 @@
 // added to 1.5 * 2^52, where neighbouring doubles differ by 1, and read off the lowest bits. On
 // processors with AVX2 the vectors are twice as long (with_longest_vectors).
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint8_t kIntegers = 0;
@@ -365,4 +365,4 @@ void ColumnReader::expect_end() const {
   if (!left_.empty()) fail(where_, "bytes are left over after the last column");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Appends a column. Values are restored to the bit, negative zero included. For doubles it tells
 /// whether they went as integers, of less than 2^51 then.
@@ -37,7 +37,7 @@ class ColumnReader {
   /// Takes all that is left as the byte planes of so many records, at least one.
   void read_byte_planes(std::size_t count, std::vector<std::byte>& records);
 
-  /// Throws Error if anything is left.
+  /// Throws Failure if anything is left.
   void expect_end() const;
 
  private:
@@ -45,4 +45,4 @@ class ColumnReader {
   FileSpot where_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 BufferedInput::BufferedInput(InputBytes& source)
     : source_(source),
@@ -25,4 +25,4 @@ bool BufferedInput::refill(std::size_t size) {
   return end_ >= size;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

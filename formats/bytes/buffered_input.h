@@ -9,7 +9,7 @@
 
 #include "formats/bytes/input_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Hands out some bytes at a time of a file that is read a buffer at a time. `source` must outlive
 /// it.
@@ -59,4 +59,4 @@ class BufferedInput {
   std::size_t end_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

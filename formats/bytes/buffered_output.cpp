@@ -6,7 +6,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void BufferedOutput::append(std::string_view text) {
   while (!text.empty()) {
@@ -33,4 +33,4 @@ void BufferedOutput::flush() {
   used_ = 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 
 #include "formats/disk/file_system.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Collects bytes and hands them to a file in buffers of some megabytes, which the file passes on
 /// without copying. Only what is filled of a buffer takes memory, so one that waits takes none.
@@ -48,4 +48,4 @@ class BufferedOutput {
   std::size_t used_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,9 @@
 #include <span>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 static_assert(std::endian::native == std::endian::little, "the formats are read and written as is");
 
@@ -36,4 +38,4 @@ inline std::span<const std::byte> as_bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <cctype>
 #include <charconv>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -50,4 +50,4 @@ bool begins_with_word(std::string_view first_bytes, std::string_view word) {
           std::isspace(static_cast<unsigned char>(first_bytes[word.size()])) != 0);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// The fields of one line of a text mesh, separated by blanks and tabs.
 class Fields {
@@ -35,4 +37,4 @@ bool begins_with_word(std::string_view first_bytes, std::string_view word);
 /// All of `text` as an unsigned integer, or nothing.
 std::optional<std::uint64_t> parse_count(std::string_view text);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

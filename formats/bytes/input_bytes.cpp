@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::span<const std::byte> InputBytes::peek(std::size_t count) {
   peeked_.erase(peeked_.begin(), peeked_.begin() + static_cast<std::ptrdiff_t>(peeked_read_));
@@ -61,4 +61,4 @@ std::optional<double> InputBytes::fraction_read() const {
   return std::min(1.0, static_cast<double>(position_) / static_cast<double>(*total));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

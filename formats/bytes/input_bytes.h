@@ -10,7 +10,7 @@
 
 #include "formats/disk/file_system.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// An input file whose next bytes can be looked at before they are read, so that a pipe's format
 /// can be recognised, and that knows how far it has been read.
@@ -21,7 +21,7 @@ class InputBytes : public InputFile {
   /// The next `count` bytes, fewer if the file ends before; they stay unread.
   std::span<const std::byte> peek(std::size_t count);
 
-  /// Throws Error if there is nothing to read.
+  /// Throws Failure if there is nothing to read.
   void check_not_empty();
 
   std::size_t read(std::span<std::byte> buffer) override;
@@ -55,4 +55,4 @@ class InputBytes : public InputFile {
   std::uint64_t position_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using Foreign = nlohmann::ordered_json;
@@ -147,4 +147,4 @@ std::string json_to_text(const Json& json, int indent) {
                                                Foreign::error_handler_t::replace);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

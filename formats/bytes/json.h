@@ -14,7 +14,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A value of JSON. Objects keep the order in which their members came.
 class Json {
@@ -99,9 +99,9 @@ struct Json::Member {
 };
 
 /// JSON that is none.
-class JsonError : public Error {
+class JsonError : public Failure {
  public:
-  JsonError(const std::string& what, std::size_t byte) : Error(what), byte_(byte) {}
+  JsonError(const std::string& what, std::size_t byte) : Failure(what), byte_(byte) {}
   /// Where it was seen, from 1.
   [[nodiscard]] std::size_t byte() const { return byte_; }
 
@@ -116,4 +116,4 @@ Json parse_json(std::string_view text);
 /// U+FFFD, since JSON cannot hold them.
 std::string json_to_text(const Json& json, int indent = -1);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 bool LineReader::next(std::string_view& line) {
   std::size_t searched = 0;
@@ -92,4 +92,4 @@ std::string quoted(std::string_view text) {
   return result + (text.size() > kLongest ? "...\"" : "\"");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

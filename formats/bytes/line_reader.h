@@ -9,11 +9,11 @@
 #include "formats/disk/file_system.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Lines of a text file, read in big chunks. A line ends with LF or CR LF or the end of the file; a
 /// UTF-8 byte order mark before the first one is dropped. Memory is constant: a line longer than
-/// kLongestLine is an Error.
+/// kLongestLine is an Failure.
 class LineReader {
  public:
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
@@ -30,7 +30,7 @@ class LineReader {
   [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
 
   /// Says that the line which next() gave last holds nothing, so that input of nothing else comes
-  /// to an end: throws Error if more than kLongestGap bytes of such lines have followed one
+  /// to an end: throws Failure if more than kLongestGap bytes of such lines have followed one
   /// another.
   void pass_over();
 
@@ -80,4 +80,4 @@ bool looks_like_text(std::string_view bytes);
 /// Text for messages: at most some 60 characters, nothing that is not printable, in quotes.
 std::string quoted(std::string_view text);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -1,4 +1,6 @@
 #pragma once
+
+#include "src/rooms.h"
 // Plain loops as vector code for the processor that the program runs on.
 
 #ifdef __x86_64__
@@ -10,7 +12,7 @@
 #define SPILLWAY_HAS_AVX2 false
 #endif
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 template <typename Work>
 SPILLWAY_FOR_AVX2 void with_avx2(const Work& work) {
@@ -23,7 +25,7 @@ void with_longest_vectors(const Work& work) {
   SPILLWAY_HAS_AVX2 ? with_avx2(work) : work();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats
 
 #undef SPILLWAY_FOR_AVX2
 #undef SPILLWAY_HAS_AVX2

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// For members of structures whose objects are told apart by their addresses.
 struct NotCopied {
@@ -9,4 +11,4 @@ struct NotCopied {
   NotCopied& operator=(const NotCopied&) = delete;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kCrsNote = "crs ";
@@ -32,4 +32,4 @@ std::string one_line(std::string text) {
   return text;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

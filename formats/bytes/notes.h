@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Whether a comment is one of Spillway's own notes on a mesh: then the file is a mesh even if it
 /// has no simplices.
@@ -23,4 +25,4 @@ bool read_crs_note(std::string_view comment, std::string& crs);
 /// A coordinate system in one line: each line break or control character becomes a blank.
 std::string one_line(std::string text);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename T>
@@ -70,4 +70,4 @@ std::optional<std::uint64_t> to_index(double value) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

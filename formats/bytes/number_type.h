@@ -11,7 +11,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Calls f with a number of that type, 0, and returns what it returns.
 template <typename F>
@@ -79,4 +79,4 @@ std::optional<std::uint64_t> load_index(NumberType type, const std::byte* bytes,
 /// integer is a double.
 std::optional<std::uint64_t> to_index(double value);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

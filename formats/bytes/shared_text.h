@@ -6,7 +6,9 @@
 #include <string_view>
 #include <utility>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A text that copies share, for what many inputs tell alike, such as the WKT of a coordinate
 /// system, of which each file of a survey may have 60 KB.
@@ -39,4 +41,4 @@ class SharedText {
   std::shared_ptr<const std::string> text_;  ///< null if empty
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kStep = std::uint64_t{1} << 20;
@@ -30,4 +30,4 @@ std::vector<std::byte> read_up_to(InputBytes& source, std::uint64_t count) {
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "formats/bytes/input_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// All that is left of a file.
 std::vector<std::byte> read_whole(InputBytes& source);
@@ -15,4 +15,4 @@ std::vector<std::byte> read_whole(InputBytes& source);
 /// wrong count takes none.
 std::vector<std::byte> read_up_to(InputBytes& source, std::uint64_t count);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -1,6 +1,6 @@
 #include "formats/bytes/word_list.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::string word_list(std::span<const std::string> words, std::string_view last) {
   std::string list;
@@ -13,4 +13,4 @@ std::string word_list(std::span<const std::string> words, std::string_view last)
   return list;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

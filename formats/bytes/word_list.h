@@ -4,9 +4,11 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Words as a sentence lists them: "a, b or c", with `last` for "or".
 std::string word_list(std::span<const std::string> words, std::string_view last);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

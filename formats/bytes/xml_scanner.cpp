@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
@@ -126,4 +126,4 @@ std::string_view XmlScanner::read_name() {
   return name;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

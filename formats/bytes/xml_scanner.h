@@ -4,7 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// One tag of an XML text.
 struct XmlTag {
@@ -56,4 +58,4 @@ class XmlScanner {
   std::size_t position_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

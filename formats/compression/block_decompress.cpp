@@ -9,7 +9,7 @@
 
 #include "formats/compression/lz4.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kStep = std::size_t{1} << 16;
@@ -67,4 +67,4 @@ bool decompress_block(BlockCompression compression, std::span<const std::byte> c
   return false;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

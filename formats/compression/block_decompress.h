@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// How a block is compressed: by zlib (RFC 1950), as a block of LZ4, or as a stream of xz.
 enum class BlockCompression { kZlib, kLz4, kXz };
@@ -16,4 +18,4 @@ enum class BlockCompression { kZlib, kLz4, kXz };
 bool decompress_block(BlockCompression compression, std::span<const std::byte> compressed,
                       std::uint64_t size, std::vector<std::byte>& content);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -17,7 +17,7 @@
 #include "formats/compression/lz4_filter.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kCompressedBuffer = std::size_t{128} << 10;
@@ -180,4 +180,4 @@ std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compress
   return std::make_unique<BoostInput>(source, compression);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

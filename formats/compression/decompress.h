@@ -8,7 +8,7 @@
 
 #include "formats/bytes/input_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 enum class Compression { kNone, kGzip, kBzip2, kZstd, kLz4 };
 
@@ -22,9 +22,9 @@ std::string_view name_of(Compression compression);
 Compression compression_of_content(std::span<const std::byte> first_bytes);
 
 /// A stream of what `source` holds compressed; several compressed streams one after another count
-/// as one. Its size is unknown. Throws Error on reading if the data is corrupt, ends early or is
+/// as one. Its size is unknown. Throws Failure on reading if the data is corrupt, ends early or is
 /// followed by something else. Memory is constant, but that for zstd with a large window (--long):
 /// as much as that window, 2 GiB at most. `source` must outlive the result.
 std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

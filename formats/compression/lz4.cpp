@@ -5,7 +5,7 @@
 
 #include <new>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::size_t lz4_compress(std::span<const std::byte> content, std::span<std::byte> room) {
   return static_cast<std::size_t>(LZ4_compress_default(
@@ -48,4 +48,4 @@ Lz4FrameDecoder::Progress Lz4FrameDecoder::decode(std::span<const char> compress
   return progress;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

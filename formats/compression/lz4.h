@@ -7,7 +7,9 @@
 #include <memory>
 #include <span>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Compresses `content` (less than 2 GiB) into `room` and returns how many bytes it took; 0 if it
 /// does not fit.
@@ -42,4 +44,4 @@ class Lz4FrameDecoder {
   std::size_t wanted_ = 1;  // 0 between frames
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 
 #include "formats/compression/lz4.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The filter. Reading throws std::ios_base::failure if the data is corrupt or ends inside a frame.
 class Lz4Decompressor {
@@ -58,4 +58,4 @@ class Lz4Decompressor {
   std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

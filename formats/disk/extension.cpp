@@ -4,7 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::string extension_of(std::string_view path) {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -14,4 +14,4 @@ std::string extension_of(std::string_view path) {
   return extension;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kFirst = std::uint64_t{256} << 10;
@@ -35,4 +35,4 @@ FileDigest digest_of(InputFile& file) {
   return digest;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

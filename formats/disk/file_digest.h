@@ -4,7 +4,7 @@
 
 #include "formats/disk/file_system.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What tells a file from another one of its name.
 struct FileDigest {
@@ -19,4 +19,4 @@ struct FileDigest {
 /// any byte on.
 FileDigest digest_of(InputFile& file);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

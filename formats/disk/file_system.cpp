@@ -19,7 +19,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kOutputBuffer = std::size_t{1} << 20;
@@ -244,7 +244,7 @@ class DiskOutput : public OutputFile {
   std::vector<std::byte> buffer_;
 };
 
-/// A copy of standard input or output. Throws Error that begins with `what` if it is closed, or
+/// A copy of standard input or output. Throws Failure that begins with `what` if it is closed, or
 /// open for the wrong direction only, as what main puts in place of what is closed.
 int copy_of_standard(int descriptor, int wrong_direction, const std::string& what) {
   const int flags = ::fcntl(descriptor, F_GETFL);
@@ -365,4 +365,4 @@ std::unique_ptr<FileSystem> disk_until(std::stop_token stop) {
   return std::make_unique<Disk>(std::move(stop));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

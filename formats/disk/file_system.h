@@ -10,7 +10,9 @@
 #include <stop_token>
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A byte stream that is read forwards, and from any byte on where it is a file.
 class InputFile {
@@ -43,7 +45,7 @@ class OutputFile {
  public:
   virtual ~OutputFile() = default;
 
-  /// Appends all bytes. Throws Error with the system's reason (disk full, ...), or ClosedPipe.
+  /// Appends all bytes. Throws Failure with the system's reason (disk full, ...), or ClosedPipe.
   virtual void write(std::span<const std::byte> bytes) = 0;
 
   /// Overwrites bytes that were already written, for headers whose values are known only at the
@@ -73,7 +75,7 @@ class FileSystem {
  public:
   virtual ~FileSystem() = default;
 
-  /// Opens for reading; "-" is standard input. Throws Error for what is missing, not readable or a
+  /// Opens for reading; "-" is standard input. Throws Failure for what is missing, not readable or a
   /// folder, and for a standard input that is closed.
   virtual std::unique_ptr<InputFile> open(const std::string& path) = 0;
 
@@ -100,4 +102,4 @@ std::unique_ptr<FileSystem> keep_outputs(std::string mark);
 /// writer.
 std::unique_ptr<FileSystem> disk_until(std::stop_token stop);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <thread>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// It is held for some renames.
@@ -33,4 +33,4 @@ FolderLock::~FolderLock() {
   if (folder_ >= 0) ::close(folder_);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// While it exists, no other run has one for the same folder. An output of several files takes one
 /// while these get their names, so that two runs which write to one name don't mix theirs. Where
@@ -19,4 +21,4 @@ class FolderLock {
   int folder_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,10 +114,10 @@ std::unique_ptr<ScratchFile> KeptScratchFolder::reopen(const std::string& file_n
     fail_at_scratch_file("write", path, errno);
   }
   if (!files_->usage.add(size)) {
-    throw Error(fmt::format("cannot go on with {}: temporary files take more than the {} bytes "
-                            "allowed",
-                            path, files_->usage.cap().value_or(0)),
-                ErrorCode::kOutOfBudget, {.file = path, .remedy = Remedy::kScratchLimit});
+    throw Failure(fmt::format("cannot go on with {}: temporary files take more than the {} bytes "
+                              "allowed",
+                              path, files_->usage.cap().value_or(0)),
+                  ErrorCode::kOutOfBudget, {.file = path, .remedy = Remedy::kScratchLimit});
   }
   {
     const std::lock_guard lock(files_->mutex);
@@ -169,4 +169,4 @@ void KeptScratchFolder::release() {
   files_->unneeded.clear();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

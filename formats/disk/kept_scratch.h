@@ -12,7 +12,7 @@
 #include "formats/disk/scratch_file.h"
 #include "formats/disk/scratch_folder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A folder of scratch files that outlives the process, so that another one goes on with them.
 /// Files that nobody needs any more stay until what is known of the others is safe on the disk
@@ -20,7 +20,7 @@ namespace spillway::detail {
 /// ScratchFolder, while no other one writes.
 class KeptScratchFolder final : public ScratchFolder {
  public:
-  /// Makes the folder if it is not there; its parent is. Throws Error with the system's reason.
+  /// Makes the folder if it is not there; its parent is. Throws Failure with the system's reason.
   KeptScratchFolder(std::string path, std::optional<std::uint64_t> cap);
   ~KeptScratchFolder() override;
   KeptScratchFolder(const KeptScratchFolder&) = delete;
@@ -56,4 +56,4 @@ class KeptScratchFolder final : public ScratchFolder {
   std::shared_ptr<Files> files_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

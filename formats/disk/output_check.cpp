@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 bool can_be_tried(const std::string& path) {
   std::error_code ignored;
@@ -16,4 +16,4 @@ void check_can_create(FileSystem& files, const std::string& path) {
   if (can_be_tried(path)) files.create(path);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

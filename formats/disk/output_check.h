@@ -6,13 +6,13 @@
 
 #include "formats/disk/file_system.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Whether an output can be opened on trial without anybody noticing: a file that is there or is
 /// yet to be made; not standard output, a named pipe or a device.
 bool can_be_tried(const std::string& path);
 
-/// Throws Error if `path` cannot be created; says nothing about what cannot be tried.
+/// Throws Failure if `path` cannot be created; says nothing about what cannot be tried.
 void check_can_create(FileSystem& files, const std::string& path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,4 +90,4 @@ OutputTarget output_target(const std::string& name) {
   return target;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,19 +12,19 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
 
 OutputTarget target_of(const std::string& name) {
   if (name == "-") {
-    throw Error("standard output cannot take what is not written in one go; name a file",
-                ErrorCode::kInvalidArgument, {.file = name});
+    throw Failure("standard output cannot take what is not written in one go; name a file",
+                  ErrorCode::kInvalidArgument, {.file = name});
   }
   OutputTarget target = output_target(name);
   if (!target.regular) {
-    throw Error(
+    throw Failure(
         fmt::format("cannot create {}: it exists and is not a regular file; choose another name",
                     name),
         ErrorCode::kInvalidArgument, {.file = name});
@@ -92,4 +92,4 @@ std::uint64_t PrivateOutput::finish(std::span<const std::string_view> stale_ends
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,13 +10,13 @@
 
 #include "formats/disk/output_target.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A private folder beside a target, for a library that writes files by itself. finish() gives what
 /// is in it its place; if destroyed without, or after a signal, nothing is left.
 class PrivateOutput {
  public:
-  /// `name` is the target's. Throws Error for standard output, for what is there and is no regular
+  /// `name` is the target's. Throws Failure for standard output, for what is there and is no regular
   /// file or is write-protected, and if its folder is missing or cannot be written to.
   explicit PrivateOutput(std::string name);
   ~PrivateOutput();
@@ -34,7 +34,7 @@ class PrivateOutput {
   /// They get the permissions of the target that they replace, if any. No other run that writes to
   /// the same folder gives its files their names meanwhile (FolderLock).
   /// Before, removes what an older target has beside itself: files of its name with one of these
-  /// ends, or extensions in place of its own. Returns the bytes of all files. Throws Error with the
+  /// ends, or extensions in place of its own. Returns the bytes of all files. Throws Failure with the
   /// system's reason, and takes back what was moved.
   std::uint64_t finish(std::span<const std::string_view> stale_ends,
                        std::span<const std::string_view> stale_extensions = {});
@@ -48,4 +48,4 @@ class PrivateOutput {
   std::string folder_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

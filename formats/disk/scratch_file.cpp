@@ -12,7 +12,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// What to do where another folder would not help.
@@ -63,10 +63,10 @@ OpenedFile::~OpenedFile() {
 
 void DiskScratchFile::append(std::span<const std::byte> bytes) {
   if (!usage_.add(bytes.size())) {
-    throw Error(fmt::format("cannot write {}: temporary files would take more than the {} bytes "
-                            "allowed",
-                            path_, usage_.cap().value_or(0)),
-                ErrorCode::kOutOfBudget, {.file = path_, .remedy = Remedy::kScratchLimit});
+    throw Failure(fmt::format("cannot write {}: temporary files would take more than the {} bytes "
+                              "allowed",
+                              path_, usage_.cap().value_or(0)),
+                  ErrorCode::kOutOfBudget, {.file = path_, .remedy = Remedy::kScratchLimit});
   }
   size_ += bytes.size();
   const OpenedFile file(path_, O_WRONLY | O_APPEND);
@@ -89,10 +89,10 @@ void DiskScratchFile::read(std::uint64_t offset, std::span<std::byte> buffer) co
     const ssize_t got =
         ::pread(file.get(), buffer.data(), buffer.size(), static_cast<off_t>(offset));
     if (got == 0) {
-      throw Error(fmt::format("cannot read {}: it ends at byte {}, before what was written to "
-                              "it; leave the folder alone while the program runs",
-                              path_, offset),
-                  ErrorCode::kBadInput, {.file = path_, .place = at_byte(offset)});
+      throw Failure(fmt::format("cannot read {}: it ends at byte {}, before what was written to "
+                                "it; leave the folder alone while the program runs",
+                                path_, offset),
+                    ErrorCode::kBadInput, {.file = path_, .place = at_byte(offset)});
     }
     if (got > 0) {
       buffer = buffer.subspan(static_cast<std::size_t>(got));
@@ -111,4 +111,4 @@ void fail_at_scratch_file(const char* action, const std::string& path, int error
                       path, error, what_to_do.empty() ? Remedy::kScratchFolder : Remedy::kNone);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

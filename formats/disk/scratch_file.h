@@ -8,7 +8,7 @@
 
 #include "formats/disk/scratch_folder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What the scratch files of a folder take on the disk, and took. Safe for many threads.
 class ScratchUsage {
@@ -73,4 +73,4 @@ class DiskScratchFile : public ScratchFile {
 /// Throws SystemRefusal: that the system refuses to do this with a scratch file, and what to do.
 [[noreturn]] void fail_at_scratch_file(const char* action, const std::string& path, int error);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,7 +16,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Files that nobody needs any more, by label. Their bytes are gone, but not their length. Another
@@ -115,7 +115,7 @@ class DiskScratchFolder : public ScratchFolder {
         file = {(std::filesystem::path(path_) / name).string()};
       }
       return std::make_unique<ReusedScratchFile>(label, *file, usage_, spares_);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       // That a folder cannot be made has one remedy, whatever the system's reason.
       throw SystemRefusal(error.what(), error.facts().file, error.facts().system_error,
                           Remedy::kScratchFolder);
@@ -147,4 +147,4 @@ std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
   return std::make_unique<DiskScratchFolder>(scratch_parent(parent), cap);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,9 @@
 #include <span>
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A file for one run: appended to, then read. Its bytes are gone from the disk when it is
 /// destroyed. append() is called by one thread at a time; read() by any number, once nothing more
@@ -17,11 +19,11 @@ class ScratchFile {
  public:
   virtual ~ScratchFile() = default;
 
-  /// Appends all bytes. Throws Error with the system's reason and what would help (disk full:
+  /// Appends all bytes. Throws Failure with the system's reason and what would help (disk full:
   /// another folder; over the cap: a larger one).
   virtual void append(std::span<const std::byte> bytes) = 0;
 
-  /// Fills `buffer` from `offset` on. Throws Error if the file is shorter.
+  /// Fills `buffer` from `offset` on. Throws Failure if the file is shorter.
   virtual void read(std::uint64_t offset, std::span<std::byte> buffer) const = 0;
 
   [[nodiscard]] virtual std::uint64_t size() const = 0;
@@ -53,4 +55,4 @@ std::string scratch_parent(const std::string& parent);
 std::unique_ptr<ScratchFolder> make_scratch_folder(const std::string& parent,
                                                    std::optional<std::uint64_t> cap);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

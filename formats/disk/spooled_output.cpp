@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;
@@ -62,4 +62,4 @@ std::unique_ptr<OutputFile> spool_output(std::unique_ptr<OutputFile> file, Scrat
   return std::make_unique<SpooledOutput>(std::move(file), scratch);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -26,7 +26,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ std::unique_lock<std::recursive_mutex> hold_off_end_of_run() { return lock_to_cr
 
 void stop_if_run_is_ending() { lock_to_create(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

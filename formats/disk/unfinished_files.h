@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A file that has a temporary name beside its own, NAME.XXXXXX.part, until it is complete. No two
 /// files have the same, so several runs may write to one NAME.
@@ -72,14 +74,14 @@ class OthersUnfinishedFile {
 };
 
 /// Makes a private folder in `parent` whose name is `prefix` and six characters, and returns its
-/// path. Throws Error with the system's reason, without a hint.
+/// path. Throws Failure with the system's reason, without a hint.
 std::string make_temporary_folder(const std::string& parent, const std::string& prefix);
 
 /// Makes a private folder NAME.XXXXXX.part beside `final_path`, for what becomes that. `name` is
 /// what messages call it. Returns its path, or "" with the reason in errno.
 std::string make_folder_beside(const std::string& final_path, const std::string& name);
 
-/// Creates an empty file in such a folder. Throws Error likewise.
+/// Creates an empty file in such a folder. Throws Failure likewise.
 void create_in_temporary_folder(const std::string& folder, const std::string& name);
 
 /// Whether `path` is what an unfinished file, or a folder beside it, is called that becomes
@@ -104,4 +106,4 @@ std::vector<std::string> remove_unfinished_files();
 /// that are gone is not the reason why the run ends.
 void stop_if_run_is_ending();
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -39,4 +39,4 @@ bool looks_like_crs(std::string_view crs) {
          crs.find('+') != std::string_view::npos;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,9 @@
 
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Whether it looks like WKT of either version: a word, and brackets that are all closed.
 bool looks_like_wkt(std::string_view crs);
@@ -15,4 +17,4 @@ bool is_compound_wkt(std::string_view crs);
 /// text.
 bool looks_like_crs(std::string_view crs);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 #include "formats/gdal/raster.h"
 #include "formats/gdal/vector_layer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What the coordinates of a system are.
 enum class CrsKind : std::uint8_t {
@@ -33,7 +33,7 @@ struct CrsUnits {
 };
 
 /// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
-/// text; what GDAL takes for none of these is an Error. May be called by many threads.
+/// text; what GDAL takes for none of these is an Failure. May be called by many threads.
 class Gdal {
  public:
   Gdal() = default;
@@ -83,7 +83,7 @@ class Gdal {
   /// be read.
   [[nodiscard]] virtual std::vector<std::string> table_names(const std::string& path) const = 0;
 
-  /// Throws Error if GDAL lacks what create_raster() needs for these options, of which name,
+  /// Throws Failure if GDAL lacks what create_raster() needs for these options, of which name,
   /// compression and cloud_optimized are looked at.
   virtual void check_raster_driver(const RasterOptions& options) const = 0;
 
@@ -91,11 +91,11 @@ class Gdal {
   [[nodiscard]] virtual std::unique_ptr<Raster> create_raster(
       const RasterOptions& options) const = 0;
 
-  /// Where an existing raster lies. Throws Error if its pixels are not square, north up.
+  /// Where an existing raster lies. Throws Failure if its pixels are not square, north up.
   [[nodiscard]] virtual RasterGrid read_raster_grid(const std::string& path) const = 0;
 };
 
-/// The module, loaded at the first call. Throws Error if it, or GDAL in this build, is not there.
+/// The module, loaded at the first call. Throws Failure if it, or GDAL in this build, is not there.
 const Gdal& gdal();
 
 /// What the module has under the name kGdalFactory: it returns what gdal() gives.
@@ -107,4 +107,4 @@ inline constexpr const char* kGdalFactory = "spillway_gdal";
 using GdalVersion = const char* (*)();
 inline constexpr const char* kGdalVersion = "spillway_gdal_version";
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// GeoTIFF keys as files have them, a record for each of the three tags. Source: OGC, "GeoTIFF
 /// Standard" 1.1 (19-008r4), 7.1.
@@ -17,4 +19,4 @@ struct GeotiffKeys {
   bool operator==(const GeotiffKeys&) const = default;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

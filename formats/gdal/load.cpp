@@ -12,7 +12,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr const char* kModule = "spillway_gdal.so";
@@ -46,7 +46,7 @@ std::filesystem::path own_folder() {
   return std::filesystem::canonical(info.dli_fname, ignored).parent_path();
 }
 
-/// Throws Error if it is in none of the folders, the one that SPILLWAY_MODULES names first.
+/// Throws Failure if it is in none of the folders, the one that SPILLWAY_MODULES names first.
 std::filesystem::path find_module() {
   if (const char* const named = std::getenv("SPILLWAY_MODULES")) {
     std::error_code ignored;
@@ -65,7 +65,7 @@ std::filesystem::path find_module() {
     const std::filesystem::path path = (folder / candidate / kModule).lexically_normal();
     if (std::filesystem::is_regular_file(path, ignored)) return path;
   }
-  throw Error(
+  throw Failure(
       fmt::format("coordinate systems, GeoTIFF, GeoPackage and Shapefile need the module {}, which "
                   "is in none of {}, {} and {}; install it, or name its folder in SPILLWAY_MODULES",
                   kModule, folder.string(), (folder / kFolders[1]).lexically_normal().string(),
@@ -90,10 +90,10 @@ const Gdal& load() {
   const std::string_view its_own =
       version == nullptr ? "unknown" : reinterpret_cast<GdalVersion>(version)();
   if (its_own != SPILLWAY_VERSION_TEXT) {
-    throw Error(fmt::format("the module {} is of another version of Spillway: {}, where {} is "
-                            "needed; install both of one version",
-                            path.string(), its_own, SPILLWAY_VERSION_TEXT),
-                ErrorCode::kInputOutput, {.file = path.string()});
+    throw Failure(fmt::format("the module {} is of another version of Spillway: {}, where {} is "
+                              "needed; install both of one version",
+                              path.string(), its_own, SPILLWAY_VERSION_TEXT),
+                  ErrorCode::kInputOutput, {.file = path.string()});
   }
   return *reinterpret_cast<GdalFactory>(factory)();
 }
@@ -105,4 +105,4 @@ const Gdal& gdal() {
   return instance;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

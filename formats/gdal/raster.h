@@ -8,7 +8,7 @@
 
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Side of a raster file's tiles in pixels.
 inline constexpr std::uint32_t kRasterTile = 256;
@@ -34,7 +34,7 @@ struct RasterOptions {
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< for overviews
 };
 
-/// A GeoTIFF of float32 bands being written. Not complete before finish(). Throws Error with GDAL's
+/// A GeoTIFF of float32 bands being written. Not complete before finish(). Throws Failure with GDAL's
 /// reason. The same tiles in the same order give the same bytes for any number of threads.
 class Raster {
  public:
@@ -51,4 +51,4 @@ class Raster {
   virtual void finish() = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What a vector file of one layer holds.
 struct VectorLayerOptions {
@@ -26,7 +26,7 @@ struct VectorLayerOptions {
 };
 
 /// A layer being written. The file is not complete before finish(), and is left as it is if the
-/// layer is destroyed without. Throws Error with GDAL's reason.
+/// layer is destroyed without. Throws Failure with GDAL's reason.
 class VectorLayer {
  public:
   VectorLayer() = default;
@@ -43,7 +43,7 @@ class VectorLayer {
 };
 
 /// A layer of triangles being read: polygons of three corners, TINs, or collections of these.
-/// Throws Error with the feature's number for anything else.
+/// Throws Failure with the feature's number for anything else.
 class TriangleLayer {
  public:
   TriangleLayer() = default;
@@ -59,4 +59,4 @@ class TriangleLayer {
   virtual bool next(std::array<WorldPoint, 3>& corners) = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

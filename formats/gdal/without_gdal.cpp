@@ -3,13 +3,13 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 const Gdal& gdal() {
-  throw Error(
+  throw Failure(
       "coordinate systems, GeoTIFF, GeoPackage, Shapefile and GeoJSON need GDAL, which this build "
       "of Spillway does not have: build it with SPILLWAY_GDAL",
       ErrorCode::kInvalidArgument);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/inputs/open_mesh.h"
 #include "formats/inputs/open_points.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
@@ -30,24 +30,25 @@ std::unique_ptr<InputFile> ProbedInput::open(const std::string& path) {
   return files_.open(path);
 }
 
-InputKind kind_of_input(ProbedInput& input, MeshFormats formats) {
+ContentKind kind_of_content(ProbedInput& input, MeshFormats formats) {
   const bool is_pipe = input.is_pipe();
   const MeshFormat* const named = mesh_format_of_name(input.path(), formats);
   const bool is_named_stream = named != nullptr && named->is_stream();
   if (!is_pipe && !input.exists(input.path()) && !is_named_stream) {
     // A mesh in several files may go by a name that no file has.
-    return is_mesh(input.beneath(), input.path(), formats) ? InputKind::kMesh : InputKind::kPoints;
+    return is_mesh(input.beneath(), input.path(), formats) ? ContentKind::kMesh
+                                                           : ContentKind::kPoints;
   }
   InputBytes& source = input.source();
   const std::string_view text = as_text(source.peek(kProbe));
   const MeshFormat* const told = mesh_format_of_content(source, formats);
-  if (told != nullptr && told->is_stream()) return InputKind::kMeshStream;
+  if (told != nullptr && told->is_stream()) return ContentKind::kMeshStream;
   if (is_named_stream && !begins_as_points(source.peek(kProbe))) {
-    return told != nullptr ? InputKind::kMesh : InputKind::kMeshStream;
+    return told != nullptr ? ContentKind::kMesh : ContentKind::kMeshStream;
   }
-  if (!is_pipe && is_mesh(input.beneath(), input.path(), formats)) return InputKind::kMesh;
-  return stream_format_that_resembles(text, formats) != nullptr ? InputKind::kMeshStream
-                                                                : InputKind::kPoints;
+  if (!is_pipe && is_mesh(input.beneath(), input.path(), formats)) return ContentKind::kMesh;
+  return stream_format_that_resembles(text, formats) != nullptr ? ContentKind::kMeshStream
+                                                                : ContentKind::kPoints;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

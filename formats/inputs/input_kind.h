@@ -7,7 +7,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A file system in which one input can be looked at before somebody opens it: what the look has
 /// read of a pipe is not lost. Everything else is as in the file system beneath.
@@ -23,7 +23,7 @@ class ProbedInput final : public FileSystem {
   InputBytes& source();
 
   /// Whether the input's bytes come only once: standard input, and what exists and is no regular
-  /// file, as a named pipe or /dev/fd/N. To be asked before open(). Throws Error if the input is
+  /// file, as a named pipe or /dev/fd/N. To be asked before open(). Throws Failure if the input is
   /// there and cannot be opened.
   bool is_pipe();
 
@@ -44,14 +44,14 @@ class ProbedInput final : public FileSystem {
   std::unique_ptr<InputBytes> source_;
 };
 
-enum class InputKind {
+enum class ContentKind {
   kPoints,
   kMesh,        ///< what read_mesh() reads
   kMeshStream,  ///< what open_mesh_stream_reader() reads
 };
 
 /// What an input holds, by its name and its first bytes; points if neither tells of a mesh. A pipe
-/// holds points or a mesh stream. Throws Error if it cannot be opened.
-InputKind kind_of_input(ProbedInput& input, MeshFormats formats = mesh_formats());
+/// holds points or a mesh stream. Throws Failure if it cannot be opened.
+ContentKind kind_of_content(ProbedInput& input, MeshFormats formats = mesh_formats());
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -18,7 +18,7 @@
 #include "formats/inputs/point_folder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,13 +120,13 @@ void append_list(const std::string& list, Found& found) {
 
 }  // namespace
 
-bool stands_for_several(const std::string& argument) {
+bool names_several(const std::string& argument) {
   std::error_code unknown;
   return is_list(argument) || is_pattern(argument) || fs::is_directory(argument, unknown);
 }
 
-std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments,
-                                       const std::function<void(std::string_view)>& notice) {
+std::vector<std::string> expand_paths(const std::vector<std::string>& arguments,
+                                      const std::function<void(std::string_view)>& notice) {
   Found found;
   for (const std::string& argument : arguments) {
     if (is_list(argument)) {
@@ -147,4 +147,4 @@ std::vector<std::string> expand_inputs(const std::vector<std::string>& arguments
   return found.files;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,10 +5,12 @@
 #include <string_view>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Whether an argument is a list, a folder or a pattern, as below.
-bool stands_for_several(const std::string& argument);
+bool names_several(const std::string& argument);
 
 /// The files that arguments stand for, in the order of the arguments:
 /// - "-" and names of files: themselves, as is what names nothing that there is;
@@ -18,10 +20,10 @@ bool stands_for_several(const std::string& argument);
 /// - "@LIST": the lines of that file ("@-": of standard input), each a name, folder or pattern as
 ///   above, relative to the folder of the list; blank lines and those that begin with # are left
 ///   out.
-/// Throws Error for a folder without point files, a pattern that matches nothing, and an empty
+/// Throws Failure for a folder without point files, a pattern that matches nothing, and an empty
 /// list.
-std::vector<std::string> expand_inputs(
+std::vector<std::string> expand_paths(
     const std::vector<std::string>& arguments,
     const std::function<void(std::string_view)>& notice = nullptr);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

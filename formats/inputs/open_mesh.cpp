@@ -15,7 +15,7 @@
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
@@ -24,7 +24,7 @@ constexpr std::size_t kProbe = 1024;
 bool has_simplices(const MeshFormat& format, InputBytes& source) {
   try {
     return format.has_simplices == nullptr || format.has_simplices(source);
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return true;
   }
 }
@@ -39,7 +39,7 @@ const MeshFormat* format_of_files(const FileSystem& files, const std::string& pa
   return nullptr;
 }
 
-/// Throws Error if the file is one of those of a mesh in several, or begins as points do, whatever
+/// Throws Failure if the file is one of those of a mesh in several, or begins as points do, whatever
 /// its name says.
 void refuse_what_is_no_mesh(InputBytes& source, const std::string& path, MeshFormats formats) {
   for (const MeshFormat* const format : formats) {
@@ -55,7 +55,7 @@ void refuse_what_is_no_mesh(InputBytes& source, const std::string& path, MeshFor
                  at_byte(0));
 }
 
-/// Throws Error for a table in a pipe, which nobody could open by its name again.
+/// Throws Failure for a table in a pipe, which nobody could open by its name again.
 void refuse_pipe_of_tables(const InputBytes& source, const std::string& path,
                            const MeshFormat& format) {
   if (!format.is_table() || (path != "-" && source.size())) return;
@@ -116,7 +116,7 @@ bool is_on_lattice(const Mesh& mesh) {
 /// A lattice that vertices are not on says nothing of them.
 void check_lattice_of(const Mesh& mesh, const std::string& path) {
   if (!mesh.header.lattice) return;
-  const Lattice& lattice = *mesh.header.lattice;
+  const IntegerLattice& lattice = *mesh.header.lattice;
   const Box<3> integers = integers_of(lattice, box_around(mesh.vertices));
   if (is_exact(lattice, integers, mesh.header.dimension) || !is_on_lattice(mesh)) return;
   check_lattice({path}, lattice, integers, mesh.header.dimension);
@@ -131,7 +131,7 @@ Mesh collect_mesh(MeshStreamReader& stream) {
   mesh.header.lattice = stream.header().lattice;
   mesh.header.crs = stream.header().crs;
   mesh.header.attributes = stream.header().attributes;
-  MeshBlock block;
+  MeshStreamBlock block;
   while (stream.read(block)) {
     append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
     const std::vector<WorldPoint> vertices = world_vertices(stream.header(), block);
@@ -167,4 +167,4 @@ Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& fo
   return mesh;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The format of meshes that the first bytes tell of; null if they are not those of a mesh.
 const MeshFormat* mesh_format_of_content(InputBytes& source, MeshFormats formats = mesh_formats());
@@ -20,11 +20,11 @@ bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats = m
 /// `X_simplices.npy`) by either name or as `X.npy`, of tables those on the machine's own disk.
 /// `format_name` is a format's name; if it is empty, the first bytes tell, then the path. Checked
 /// before anything is allocated: counts against the file's size, vertex numbers against the vertex
-/// count. Coordinates are finite. Throws Error that names the file and the byte or line.
+/// count. Coordinates are finite. Throws Failure that names the file and the byte or line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "",
                MeshFormats formats = mesh_formats());
 
 /// The whole of a stream of which nothing has been read, in output coordinates.
 Mesh collect_mesh(MeshStreamReader& stream);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 4096;
@@ -42,11 +42,11 @@ std::unique_ptr<MeshStreamReader> open_mesh_stream_reader(FileSystem& files,
   const MeshFormat& format = format_name.empty() ? mesh_stream_format(*source, path, formats)
                                                  : mesh_format(path, format_name, formats);
   if (!format.is_stream()) {
-    throw Error(fmt::format("{}: {} is not a format of streams; {} are", source->name(),
-                            format_name, list_of_formats(is_a_stream, "and", formats)),
-                ErrorCode::kInvalidArgument, {.file = source->name()});
+    throw Failure(fmt::format("{}: {} is not a format of streams; {} are", source->name(),
+                              format_name, list_of_formats(is_a_stream, "and", formats)),
+                  ErrorCode::kInvalidArgument, {.file = source->name()});
   }
   return format.open_stream(std::move(source));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

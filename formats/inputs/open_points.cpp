@@ -16,7 +16,7 @@
 #include "formats/points/open_las.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 512;
@@ -33,7 +33,7 @@ constexpr std::size_t kProbe = 512;
       at_byte(0));
 }
 
-/// Throws Error if the source begins as a mesh of a format that is known by its first bytes. A
+/// Throws Failure if the source begins as a mesh of a format that is known by its first bytes. A
 /// table may have shapes of any kind.
 void refuse_meshes(InputBytes& source) {
   const MeshFormat* const format = mesh_format_of_bytes(as_text(source.peek(kProbe)));
@@ -46,7 +46,7 @@ void refuse_meshes(InputBytes& source) {
   fail_for_mesh(source, format->title);
 }
 
-/// Throws Error if the source begins as a mesh, or as something else that is text, but no text of
+/// Throws Failure if the source begins as a mesh, or as something else that is text, but no text of
 /// points.
 void refuse_what_is_no_points(InputBytes& source) {
   refuse_meshes(source);
@@ -108,7 +108,7 @@ const PointFormat& format_of(InputBytes& source, const std::string& path, PointF
                  at_byte(0));
 }
 
-/// How the text is compressed, by its first bytes. Throws Error if the name promises what the file
+/// How the text is compressed, by its first bytes. Throws Failure if the name promises what the file
 /// is not.
 Compression compression_of(InputBytes& source, const std::string& path, PointFormats formats) {
   const std::span<const std::byte> first_bytes = source.peek(kProbe);
@@ -127,7 +127,7 @@ Compression compression_of(InputBytes& source, const std::string& path, PointFor
   return found;
 }
 
-/// Throws Error unless the source begins as text, or is empty.
+/// Throws Failure unless the source begins as text, or is empty.
 void check_text(InputBytes& source, PointFormats formats) {
   if (looks_like_text(as_text(source.peek(kProbe)))) return;
   throw BadInput(
@@ -137,7 +137,7 @@ void check_text(InputBytes& source, PointFormats formats) {
       at_byte(0));
 }
 
-/// What is in the source if it is compressed, else null. Throws Error unless that is text of
+/// What is in the source if it is compressed, else null. Throws Failure unless that is text of
 /// points.
 std::unique_ptr<InputFile> text_in(InputBytes& source, const std::string& path,
                                    PointFormats formats) {
@@ -180,4 +180,4 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
   return format->open_reader(std::move(input), options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

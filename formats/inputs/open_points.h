@@ -8,7 +8,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/points/point_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Whether a file that begins with these bytes holds points, or something compressed, which only
 /// points may be; false where the first bytes do not tell, as those of text.
@@ -22,4 +22,4 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
                                                const PointReaderOptions& options,
                                                PointFormats formats = point_formats());
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -20,7 +20,7 @@
 #include "formats/points/point_formats.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ PointFolder look_into_folder(const std::string& folder) {
   return found;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

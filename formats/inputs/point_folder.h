@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// What a folder has of point files.
 struct PointFolder {
@@ -22,7 +24,7 @@ std::string formats_in_files();
 /// Looks at the names in a folder. What lies beside tiles is not meant by the folder's name, so it
 /// stands for files of one kind: LAS and LAZ if there are any, else those with the extension that
 /// most files have; of as many, those that are not text. Hidden files and folders below are not
-/// looked at. Throws Error for a folder that cannot be read or has no point files.
+/// looked at. Throws Failure for a folder that cannot be read or has no point files.
 PointFolder look_into_folder(const std::string& folder);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

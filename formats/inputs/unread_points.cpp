@@ -8,7 +8,7 @@
 
 #include "formats/bytes/fields.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 struct Beginning {
@@ -58,4 +58,4 @@ std::string_view unread_points(std::string_view first_bytes) {
   return is_ptx(first_bytes) ? "a scan in PTX" : "";
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

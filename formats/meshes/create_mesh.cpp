@@ -7,7 +7,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Throws InvalidArgument if the format cannot hold the mesh.
@@ -49,18 +49,19 @@ MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const Me
   return created;
 }
 
-std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header) {
+std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshFileHeader& header) {
   const MeshFormat& format = *files.format;
   if (format.open_writer == nullptr) {
-    throw Error("this mesh format is written block by block, not as a whole mesh",
-                ErrorCode::kInvalidArgument, {.file = files.path});
+    throw Failure("this mesh format is written block by block, not as a whole mesh",
+                  ErrorCode::kInvalidArgument, {.file = files.path});
   }
   return format.open_writer(std::move(files), header);
 }
 
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
-                                             const MeshFormat& format, const MeshHeader& header) {
+                                             const MeshFormat& format,
+                                             const MeshFileHeader& header) {
   return open_mesh_writer(create_mesh_files(files, path, format, contents_of(header)), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

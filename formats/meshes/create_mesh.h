@@ -6,20 +6,21 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// Creates the files of the mesh `path` ("-": standard output). Throws Error if the format cannot
+/// Creates the files of the mesh `path` ("-": standard output). Throws Failure if the format cannot
 /// hold it (MeshFormat tells), if it needs two files or one that it can go back in and gets
 /// standard output, or if a file cannot be created.
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
                             const MeshContents& contents);
 
-/// Begins to write to these files. Throws Error for what is written block by block:
+/// Begins to write to these files. Throws Failure for what is written block by block:
 /// open_mesh_stream_writer() does that.
-std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshHeader& header);
+std::unique_ptr<MeshWriter> open_mesh_writer(MeshFiles files, const MeshFileHeader& header);
 
 /// Creates the files of a mesh and begins to write to them.
 std::unique_ptr<MeshWriter> open_mesh_writer(FileSystem& files, const std::string& path,
-                                             const MeshFormat& format, const MeshHeader& header);
+                                             const MeshFormat& format,
+                                             const MeshFileHeader& header);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

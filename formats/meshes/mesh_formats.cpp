@@ -25,7 +25,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // clang-format off
@@ -163,4 +163,4 @@ std::string rounding_note(const MeshFormat& format, const std::string& path) {
   return note;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// All formats, in the order in which the command lists them.
 MeshFormats mesh_formats();
@@ -61,4 +61,4 @@ std::vector<std::string> lost_attributes(const MeshFormat& format, const Attribu
 /// or sees them from an origin; empty for others.
 std::string rounding_note(const MeshFormat& format, const std::string& path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

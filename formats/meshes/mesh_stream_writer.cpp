@@ -5,7 +5,7 @@
 #include "formats/meshes/create_mesh.h"
 #include "formats/meshes/spooled_mesh_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
                                                           const std::string& path,
@@ -19,4 +19,4 @@ std::unique_ptr<MeshStreamWriter> open_mesh_stream_writer(FileSystem& files,
   return open_spooled_mesh_writer(std::move(created), header, scratch);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

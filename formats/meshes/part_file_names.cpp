@@ -7,7 +7,7 @@
 
 #include "formats/disk/extension.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Without the extension, if it is the format's own or the index's.
@@ -40,4 +40,4 @@ std::string part_index_text(const std::string& path, const MeshFormat& format, i
   return format.part_index->text(names, header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The name of file `part`, from 0, of `parts` of the mesh `path`: its extension, if that is the
 /// format's own or that of its index, makes way for the number, with as many digits as the last one
@@ -19,4 +19,4 @@ std::string part_index_name(const std::string& path, const MeshFormat& format);
 std::string part_index_text(const std::string& path, const MeshFormat& format, int parts,
                             const MeshStreamHeader& header);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "formats/meshes/spool/mesh_spool.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Counts what is written to a file.
@@ -43,18 +43,18 @@ class SpooledMeshWriter : public MeshStreamWriter {
     }
   }
 
-  void absorb(MeshBlock& block) override {
+  void absorb(MeshStreamBlock& block) override {
     if (!holds_attributes_) block.attributes = {};
     spool_.absorb(block);
   }
-  void write(MeshBlock&& block) override {
+  void write(MeshStreamBlock&& block) override {
     if (!holds_attributes_) block.attributes = {};
     spool_.write(std::move(block));
   }
 
   void finish(const MeshTotals& totals) override {
     spool_.finish(totals);
-    MeshHeader header = header_of_mesh(spool_.header(), totals);
+    MeshFileHeader header = header_of_mesh(spool_.header(), totals);
     header.colours_are_bytes = spool_.colours_are_bytes();
     const std::unique_ptr<MeshWriter> writer = open_mesh_writer(std::move(files_), header);
     spool_.copy_to(*writer);
@@ -89,4 +89,4 @@ std::unique_ptr<MeshStreamWriter> open_spooled_mesh_writer(MeshFiles files,
   return std::make_unique<SpooledMeshWriter>(std::move(files), header, scratch, memory);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/meshes/common/mesh_format.h"
 #include "formats/meshes/spool/mesh_spool.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes a mesh in a format whose counts come first: blocks are spooled, encoded as in spm, and
 /// finish() reads the spool twice, for vertices and for simplices. A spool of at most `memory`
@@ -17,4 +17,4 @@ std::unique_ptr<MeshStreamWriter> open_spooled_mesh_writer(MeshFiles files,
                                                            ScratchFolder& scratch,
                                                            std::size_t memory = kSpoolMemory);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 #include "formats/bytes/notes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kFirstPeek = std::size_t{1} << 12;
@@ -222,4 +222,4 @@ PlyHeader read_ply_header(InputBytes& source) {
   return header;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

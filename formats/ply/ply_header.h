@@ -12,7 +12,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/bytes/number_type.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 
@@ -59,7 +59,7 @@ inline constexpr std::string_view kPlyVertex = "vertex";
 inline constexpr std::string_view kPlyFace = "face";
 inline constexpr std::string_view kPlyTetrahedron = "tetrahedron";
 
-/// Reads the header, up to the first value. Throws Error that says what is wrong and in which line.
+/// Reads the header, up to the first value. Throws Failure that says what is wrong and in which line.
 PlyHeader read_ply_header(InputBytes& source);
 
 /// The same, and the header stays unread.
@@ -71,4 +71,4 @@ bool begins_as_ply(std::string_view first_bytes);
 /// The name of a type in a header: "uchar", "double"; nothing for integers of 64 bits.
 std::optional<std::string_view> ply_type(NumberType type);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

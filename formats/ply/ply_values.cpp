@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::string PlyItem::text() const { return fmt::format("{} {}", element_, number_); }
 
@@ -88,4 +88,4 @@ bool PlyTextValues::next_line() {
   return false;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -13,7 +13,7 @@
 #include "formats/ply/ply_header.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The item that is being read, for messages: "face 7".
 class PlyItem {
@@ -71,7 +71,7 @@ class PlyBinaryValues {
   /// Makes sure that the file ends here.
   void finish();
 
-  /// Throws Error about the current item.
+  /// Throws Failure about the current item.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
@@ -147,4 +147,4 @@ void pass_over(Values& values, const PlyElement& element) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

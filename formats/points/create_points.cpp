@@ -11,7 +11,7 @@
 #include "formats/disk/spooled_output.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 std::string name_of_output(const std::string& path) {
@@ -81,4 +81,4 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
   return format.open_writer(std::move(file), path, options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

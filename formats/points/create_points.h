@@ -7,7 +7,7 @@
 #include "formats/points/common/point_writer.h"
 #include "formats/points/point_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Opens `path` ("-": standard output). Throws InvalidArgument for what cannot be asked for.
 std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::string& path,
@@ -19,4 +19,4 @@ std::unique_ptr<PointWriter> open_point_writer(FileSystem& files, const std::str
 const PointFormat& point_format_to_write(const std::string& path, const std::string& format_name,
                                          PointFormats formats = point_formats());
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/points/las/las_variant.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions& options,
                                       PointFormats formats) {
@@ -21,4 +21,4 @@ std::unique_ptr<PointReader> open_las(PointInput input, const PointReaderOptions
   throw BadInput(input.path, "no format is known that has such a header", at_byte(0));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,7 +16,7 @@
 #include "formats/points/text/text_format.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // clang-format off
@@ -117,4 +117,4 @@ std::vector<std::string> point_extensions(PointFormats formats) {
   return extensions;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

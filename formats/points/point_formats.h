@@ -8,7 +8,7 @@
 
 #include "formats/points/common/point_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// All formats, in the order in which the command lists them.
 PointFormats point_formats();
@@ -36,7 +36,7 @@ const PointFormat* point_format_of_bytes(std::string_view first_bytes,
                                          PointFormats formats = point_formats());
 
 /// The format of a source that begins as a mesh might, and whose header tells of points; null if it
-/// does not. Throws Error if such a header is damaged.
+/// does not. Throws Failure if such a header is damaged.
 const PointFormat* point_format_of_header(InputBytes& source,
                                           PointFormats formats = point_formats());
 
@@ -56,4 +56,4 @@ bool is_written(const PointFormat& format);
 /// The extensions of all formats, with the dot: ".las", ".laz", ".txt", ...
 std::vector<std::string> point_extensions(PointFormats formats = point_formats());
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kChannels = 4;
@@ -50,4 +50,4 @@ std::uint64_t write_png(FileSystem& files, const std::string& path, std::uint32_
   return size;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

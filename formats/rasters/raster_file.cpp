@@ -5,7 +5,7 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// What GDAL and others put beside a raster: overviews, metadata and statistics, masks. Readers
@@ -26,4 +26,4 @@ std::uint64_t RasterFile::finish() {
   return output_.finish(kSidecarEnds);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,13 +6,13 @@
 #include "formats/disk/private_output.h"
 #include "formats/gdal/raster.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A GeoTIFF being written. GDAL writes it into a private folder beside the target; finish() gives
 /// it its name. If destroyed without, or after a signal, nothing is left.
 class RasterFile {
  public:
-  /// Begins the file `options.path`; the name of the options is set here. Throws Error if it cannot
+  /// Begins the file `options.path`; the name of the options is set here. Throws Failure if it cannot
   /// be created.
   explicit RasterFile(RasterOptions options);
 
@@ -27,4 +27,4 @@ class RasterFile {
   std::unique_ptr<Raster> raster_;  ///< writes to output_, so it goes first
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,10 +4,10 @@
 
 #include "formats/disk/extension.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 bool RasterFormat::is_named(std::string_view path) const {
   return std::ranges::find(extensions, extension_of(path)) != extensions.end();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

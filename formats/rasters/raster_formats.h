@@ -4,11 +4,13 @@
 #include <span>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A format of rasters.
 struct RasterFormat {
-  std::string_view name;                         ///< in figures of the command
+  std::string_view name;                         ///< in statistics of the command
   std::span<const std::string_view> extensions;  ///< in lower case; the first is the usual one
 
   /// Whether the path has such an extension.
@@ -26,4 +28,4 @@ inline constexpr RasterFormat kGeoTiff = {.name = "tif", .extensions = raster_na
 /// Of colours, which png.h writes.
 inline constexpr RasterFormat kPng = {.name = "png", .extensions = raster_names::kPng};
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

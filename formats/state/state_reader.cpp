@@ -12,7 +12,7 @@
 #include "formats/state/state_blocks.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What `read` returns; adds to its errors what to do.
 template <typename Read>
@@ -20,7 +20,7 @@ auto StateReader::sound(const Read& read) const {
   try {
     return read();
   } catch (const BadInput& error) {
-    throw Error(with_remedy(error), error.code(), error.facts());
+    throw Failure(with_remedy(error), error.code(), error.facts());
   }
 }
 
@@ -91,7 +91,7 @@ void StateReader::take_block() {
 
 void StateReader::fail(std::string_view what) const {
   const BadInput error(FileSpot{file_->name(), at_byte(block_begin_)}, std::string(what));
-  throw Error(with_remedy(error), error.code(), error.facts());
+  throw Failure(with_remedy(error), error.code(), error.facts());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

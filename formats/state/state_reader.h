@@ -13,7 +13,7 @@
 #include "formats/state/state_transfer.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Reads what a StateWriter wrote, in the same order. Throws BadInput with the file and the byte
 /// for whatever is not that.
@@ -59,4 +59,4 @@ class StateReader {
   std::map<std::uint32_t, std::shared_ptr<ScratchFile>> files_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

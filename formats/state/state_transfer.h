@@ -13,7 +13,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 template <typename State>
 struct StateTransfer;
@@ -98,4 +100,4 @@ void transfer(State& state, T& value) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

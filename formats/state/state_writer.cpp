@@ -8,7 +8,7 @@
 #include "formats/disk/kept_scratch.h"
 #include "formats/state/state_blocks.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void StateWriter::bytes(const void* bytes, std::size_t size) {
   std::span<const std::byte> left(static_cast<const std::byte*>(bytes), size);
@@ -53,4 +53,4 @@ void StateWriter::put_block(std::uint32_t kind) {
   block_.clear();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

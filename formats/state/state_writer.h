@@ -12,7 +12,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/state/state_transfer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes what a run needs to go on, as blocks with checksums (docs/formats-blocks.md).
 class StateWriter {
@@ -46,4 +46,4 @@ class StateWriter {
   std::uint64_t written_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -15,7 +15,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Journals beside a vector file. Those of an older file of that name would make nonsense of the
@@ -71,4 +71,4 @@ void VectorFile::finish() {
   bytes_ = output_.finish(kJournalEnds, format_.part_extensions);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

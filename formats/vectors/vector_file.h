@@ -8,7 +8,7 @@
 #include "formats/gdal/vector_layer.h"
 #include "formats/vectors/vector_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Says which layers of the file at `path` are lost when a vector file takes its place: all but the
 /// one that is written again. Empty if there are none, or nothing is there, or the format holds one
@@ -21,7 +21,7 @@ std::string lost_layers_text(const VectorFormat& format, const std::string& path
 class VectorFile {
  public:
   /// Begins the file `options.path` with a layer that is named after it; name, layer and driver of
-  /// the options are set here. Throws Error if it cannot be created.
+  /// the options are set here. Throws Failure if it cannot be created.
   VectorFile(const VectorFormat& format, VectorLayerOptions options);
 
   [[nodiscard]] VectorLayer& layer() { return *layer_; }
@@ -39,4 +39,4 @@ class VectorFile {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/bytes/word_list.h"
 #include "formats/disk/extension.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::span<const VectorFormat* const> vector_formats() {
   static constexpr const VectorFormat* kFormats[] = {&kGeoPackage, &kShapefile, &kGeoJson};
@@ -34,4 +34,4 @@ std::string vector_extensions(bool all) {
   return word_list(extensions, "or");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

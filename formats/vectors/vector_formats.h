@@ -6,7 +6,9 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A format of vector files.
 struct VectorFormat {
@@ -55,4 +57,4 @@ const VectorFormat* vector_format_of_path(std::string_view path);
 /// Their extensions, the first ones or all: ".gpkg, .shp, .geojson or .json".
 std::string vector_extensions(bool all);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

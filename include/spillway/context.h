@@ -15,7 +15,7 @@
 
 namespace spillway {
 
-namespace detail {
+namespace stream {
 class ContextState;
 }
 
@@ -98,14 +98,14 @@ class SPILLWAY_API Context {
   [[nodiscard]] const std::optional<std::uint64_t>& scratch_limit() const { return scratch_limit_; }
 
   /// For the library itself: what calls have in common besides. Copies of a context share it.
-  [[nodiscard]] detail::ContextState& state() const { return *state_; }
+  [[nodiscard]] stream::ContextState& state() const { return *state_; }
 
  private:
   ContextOptions options_;
   std::uint64_t memory_ = 0;
   unsigned threads_ = 1;
   std::optional<std::uint64_t> scratch_limit_;
-  std::shared_ptr<detail::ContextState> state_;
+  std::shared_ptr<stream::ContextState> state_;
 };
 
 }  // namespace spillway

@@ -18,11 +18,11 @@
 
 namespace spillway {
 
-namespace detail {
+namespace stream {
 class EngineSink;
 class OpenedMesh;
 struct OwnParts;
-}  // namespace detail
+}  // namespace stream
 
 /// What is known of a mesh before its first block. What is said must be right.
 struct MeshHeader {
@@ -65,9 +65,9 @@ class SPILLWAY_API MeshSource {
   [[nodiscard]] virtual MeshTotals totals() = 0;
 
  private:
-  friend struct detail::OwnParts;
+  friend struct stream::OwnParts;
   /// A file that the library reads, without public values; null for a program's own source.
-  virtual detail::OpenedMesh* opened_mesh() { return nullptr; }
+  virtual stream::OpenedMesh* opened_mesh() { return nullptr; }
 };
 
 /// What takes a mesh. All calls come one at a time, though from any thread: begin() once, write()
@@ -86,9 +86,9 @@ class SPILLWAY_API MeshSink {
   virtual void finish(const MeshTotals& totals);
 
  private:
-  friend struct detail::OwnParts;
+  friend struct stream::OwnParts;
   /// A sink of the library's own, as it is written without public values; null for a program's.
-  virtual detail::EngineSink* engine_sink() { return nullptr; }
+  virtual stream::EngineSink* engine_sink() { return nullptr; }
 };
 
 /// How a mesh file is read.

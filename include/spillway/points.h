@@ -18,11 +18,11 @@
 
 namespace spillway {
 
-namespace detail {
+namespace stream {
 class EnginePoints;
 class PointFile;
 struct OwnParts;
-}  // namespace detail
+}  // namespace stream
 
 /// What a source says of its points before any is read. What is not known is left out; what is said
 /// must be right, but for `count`, which may be too large.
@@ -61,9 +61,9 @@ class SPILLWAY_API PointSource {
   virtual bool read(PointsBlock& block);
 
  private:
-  friend struct detail::OwnParts;
+  friend struct stream::OwnParts;
   /// A source of the library's own, as it is read without public values; null for a program's.
-  virtual detail::EnginePoints* engine_points() { return nullptr; }
+  virtual stream::EnginePoints* engine_points() { return nullptr; }
 };
 
 /// One point a cell: grid cells [i * cell, (i + 1) * cell) of x, y and, in space, z.
@@ -166,9 +166,9 @@ class SPILLWAY_API PointSink {
   virtual void finish();
 
  private:
-  friend struct detail::OwnParts;
+  friend struct stream::OwnParts;
   /// Likewise.
-  virtual detail::PointFile* point_file() { return nullptr; }
+  virtual stream::PointFile* point_file() { return nullptr; }
 };
 
 /// How points are sorted: they come cell by cell, and the file tells beforehand where each cell

@@ -27,14 +27,14 @@ struct TileShapes {
 };
 
 /// What triangulating was like, of a run or of one of its processes.
-struct RunFigures {
+struct RunStatistics {
   MeshTotals mesh;
   std::uint64_t left_out = 0;  ///< simplices with an edge longer than max_edge
   unsigned threads = 1;        ///< that were used
   std::uint64_t tiles = 0;
   std::uint64_t leaves = 0;
-  std::size_t tile_capacity = 0;     ///< most points of a tile
-  std::size_t leaf_size = 0;         ///< most points of a leaf
+  std::size_t tile_points = 0;       ///< most points of a tile
+  std::size_t leaf_points = 0;       ///< most points of a leaf
   std::uint64_t spilled_points = 0;  ///< written to scratch files, twice counted twice
   std::uint64_t spilled_bytes = 0;
   std::uint64_t final_in_leaves = 0;            ///< simplices, infinite ones included
@@ -53,7 +53,7 @@ struct RunFigures {
 };
 
 /// What a run was like: over processes the sums of all of them, the longest of what is wall time.
-struct Report : RunFigures {
+struct Report : RunStatistics {
   int dimension = 2;
   PointCounts points;              ///< of a run from points
   bool on_lattice = false;         ///< predicates saw integers

@@ -92,7 +92,7 @@ def points_origin(
     """A mesh that is made of points, and what these carry if they are an array."""
     check_array(inputs, options)
     if dim == 3:
-        refuse(options, ["duplicates"], "with dim=3, as it chooses a height")
+        refuse(options, ["heights"], "with dim=3, as it chooses a height")
     how = triangulate_options(options, dim)
     how.input_index = bool(id)
     return _spillway.MeshOrigin(inputs, point_options(options, dim), how, carried)

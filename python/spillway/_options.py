@@ -33,7 +33,7 @@ class RunOptions(TypedDict, total=False):
 
     memory: int | str | None
     threads: int | None
-    tmpdir: PathLike | None
+    scratch_folder: PathLike | None
     max_tmp: int | str | None
     progress: Callable[[float], object] | None
 
@@ -72,11 +72,11 @@ class JoinOptions(TypedDict, total=False):
 class DivisionOptions(TypedDict, total=False):
     """How points are triangulated."""
 
-    duplicates: str | None
+    heights: str | None
     max_edge: float | None
-    distrust_headers: bool
-    tile: int | None
-    base_case: int | None
+    trust_headers: bool
+    tile_points: int | None
+    leaf_points: int | None
     division: str | None
     children: int | None
     kernel: str | None
@@ -220,7 +220,7 @@ _OPTIONS = {
         "The most threads to use. By default all that the process may use. The result does not "
         "depend on it.",
     ),
-    "tmpdir": _Option(
+    "scratch_folder": _Option(
         "path, optional",
         "Where scratch files go that do not fit into memory. By default ``$TMPDIR``, else ``/tmp``.",
     ),
@@ -339,12 +339,12 @@ _OPTIONS = {
         "points",
         attribute("foreign_crs"),
     ),
-    "duplicates": _Option(
+    "heights": _Option(
         "str, optional",
         'Which z a vertex of several points of equal x and y gets: ``"first"``, ``"lowest"``, '
         '``"highest"`` or ``"mean"``.',
         "division",
-        attribute("duplicates"),
+        attribute("heights"),
     ),
     "max_edge": _Option(
         "float, optional",
@@ -352,19 +352,20 @@ _OPTIONS = {
         "division",
         attribute("max_edge"),
     ),
-    "distrust_headers": _Option(
+    "trust_headers": _Option(
         "bool, optional",
-        "Read all points before triangulating, as headers may lie about their extent.",
+        "If False, all points are read before any is triangulated, as headers may lie about their "
+        "extent. By default True.",
         "division",
-        lambda target, value: setattr(target, "trust_headers", not value),
+        attribute("trust_headers"),
     ),
-    "tile": _Option(
+    "tile_points": _Option(
         "int, optional",
         "Most points of a tile that is loaded at a time. By default chosen by the memory.",
         "division",
         attribute("tile_points"),
     ),
-    "base_case": _Option(
+    "leaf_points": _Option(
         "int, optional",
         "Most points of a leaf, which one thread triangulates. By default chosen by number and "
         "memory.",
@@ -417,6 +418,7 @@ def takes(kind: Any) -> Callable[[_Function], _Function]:
     def decorate(function: _Function) -> _Function:
         @functools.wraps(function)
         def checked(*args: Any, **given: Any) -> Any:
+            given = _with_present_names(given)
             for name in given:
                 if name not in known:
                     raise TypeError(_unexpected(function.__name__, name, known))
@@ -437,6 +439,22 @@ def takes(kind: Any) -> Callable[[_Function], _Function]:
         return checked  # type: ignore[return-value]
 
     return decorate
+
+
+_FORMER_NAMES = {
+    "base_case": "leaf_points",
+    "duplicates": "heights",
+    "tile": "tile_points",
+    "tmpdir": "scratch_folder",
+}
+
+
+def _with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Options by the names they have now. Those of earlier versions go on working."""
+    named = {_FORMER_NAMES.get(name, name): value for name, value in given.items()}
+    if "distrust_headers" in named:
+        named["trust_headers"] = not named.pop("distrust_headers")
+    return named
 
 
 def _unexpected(function: str, name: str, known: list[str]) -> str:
@@ -495,14 +513,15 @@ def put_all(target: Any, values: Mapping[str, Any]) -> None:
             put(target, name, value, attribute(name))
 
 
-def is_given(value: Any) -> bool:
-    """Whether an option asks for anything."""
-    return value is not None and value is not False
+def is_given(options: Mapping[str, Any], name: str) -> bool:
+    """Whether an option asks for anything: headers are trusted unless they are not to be."""
+    value = options.get(name)
+    return value is not None and value is not (name == "trust_headers")
 
 
 def refuse(options: Mapping[str, Any], names: Iterable[str], where: str) -> None:
     """Raise InvalidArgumentError for options of these names, which have no effect there."""
-    given = [name for name in names if is_given(options.get(name))]
+    given = [name for name in names if is_given(options, name)]
     if given:
         verb, them = ("has", "it") if len(given) == 1 else ("have", "them")
         raise InvalidArgumentError(
@@ -517,7 +536,7 @@ def names_for(target: str) -> list[str]:
 
 def _fill(target: Any, kind: str, options: Mapping[str, Any]) -> None:
     for name, option in _OPTIONS.items():
-        if option.target == kind and option.put and is_given(options.get(name)):
+        if option.target == kind and option.put and is_given(options, name):
             put(target, name, options[name], option.put)
 
 
@@ -531,7 +550,7 @@ def point_options(options: Mapping[str, Any], dim: int) -> _spillway.PointOption
 
 def triangulate_options(options: Mapping[str, Any], dim: int) -> _spillway.TriangulateOptions:
     """How they are triangulated."""
-    if not is_given(options.get("resume")):
+    if not is_given(options, "resume"):
         refuse(options, ["checkpoint_every"], "without resume")
     made = _spillway.TriangulateOptions()
     made.dimension = dim
@@ -564,11 +583,11 @@ def make_run(options: Mapping[str, Any]) -> _spillway.Run:
     progress = options.get("progress")
     if progress is not None and not callable(progress):
         raise TypeError(f"progress is {progress!r}; give a function that takes a fraction")
-    tmpdir = options.get("tmpdir")
+    scratch_folder = options.get("scratch_folder")
     return _spillway.Run(
         _as_size(options.get("memory"), "memory"),
         as_thread_count(options.get("threads")),
-        b"" if tmpdir is None else as_path(tmpdir, "tmpdir"),
+        b"" if scratch_folder is None else as_path(scratch_folder, "scratch_folder"),
         _as_size(options.get("max_tmp"), "max_tmp"),
         progress,
         is_explained(),

@@ -351,7 +351,7 @@ def _check_products(products: list[str], light: dict[str, Any], options: Any) ->
     if not {"slope", "aspect", "hillshade"} & set(products):
         refuse(light, ["z_factor"], "without slope, aspect or hillshade among the products")
     if products == ["density"]:
-        refuse(options, ["duplicates", "max_edge"], "on density, which counts vertices")
+        refuse(options, ["heights", "max_edge"], "on density, which counts vertices")
 
 
 def _warn_of_empty(report: RasterReport) -> None:

@@ -47,7 +47,7 @@ class Run:
         self,
         memory: str,
         threads: int,
-        tmpdir: bytes,
+        scratch_folder: bytes,
         max_tmp: str,
         progress: Callable[[float], object] | None,
         explains: bool,
@@ -94,7 +94,7 @@ class PointFileOptions:
 
 class TriangulateOptions:
     dimension: int
-    duplicates: str
+    heights: str
     max_edge: float | None
     input_index: bool
     tile_points: int

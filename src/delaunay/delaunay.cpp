@@ -15,7 +15,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Smaller base cases lose more to merging, larger ones more to memory: measured in
@@ -33,7 +33,7 @@ constexpr std::size_t kGoodBorderBaseCase = D == 2 ? 32'768 : 262'144;
 
 /// Base cases of this size divide `points` points into `parts` parts, a power of two, with room for
 /// cuts that miss the middle.
-std::size_t base_case_size_for(std::size_t points, std::size_t parts) {
+std::size_t leaf_points_for(std::size_t points, std::size_t parts) {
   constexpr double kSlack = 1.1;
   return static_cast<std::size_t>(
       std::ceil(static_cast<double>(points) / static_cast<double>(parts) * kSlack));
@@ -41,9 +41,9 @@ std::size_t base_case_size_for(std::size_t points, std::size_t parts) {
 
 /// The default: of the good size, or two, so that a second thread has something to do.
 template <int D>
-std::size_t default_base_case_size(std::size_t points) {
+std::size_t default_leaf_points(std::size_t points) {
   const std::size_t fewest = points >= 2 * kSmallestBaseCase<D> ? 2 : 1;
-  return base_case_size_for(
+  return leaf_points_for(
       points, std::bit_floor(std::max(fewest, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>)));
 }
 
@@ -51,8 +51,8 @@ std::size_t default_base_case_size(std::size_t points) {
 constexpr std::size_t kBorderBaseCases = 2;
 constexpr std::size_t kSmallestBorderBaseCase = 4'096;
 
-std::size_t border_base_case_size(std::size_t points, std::size_t largest) {
-  return std::clamp(base_case_size_for(points, kBorderBaseCases),
+std::size_t border_leaf_points(std::size_t points, std::size_t largest) {
+  return std::clamp(leaf_points_for(points, kBorderBaseCases),
                     std::min(kSmallestBorderBaseCase, largest), largest);
 }
 
@@ -82,7 +82,7 @@ template <int D>
 class Run {
  public:
   /// `in_place` says where base cases leave their simplices: see BaseCaseInput.
-  Run(SlabArray<Point<D>> points, const DelaunayOptions& options, bool in_place)
+  Run(SlabArray<Point<D>> points, const DivideAndConquerOptions& options, bool in_place)
       : options_(options), in_place_(in_place) {
     result_.points = std::move(points);
     result_.input_index = SlabArray<VertexId>(result_.points.size());
@@ -93,23 +93,23 @@ class Run {
                  });
   }
 
-  Triangulation<D> triangulate(std::size_t base_case_size, std::size_t smallest_judged,
+  Triangulation<D> triangulate(std::size_t leaf_points, std::size_t smallest_judged,
                                Task& task) && {
     task.before.resize(1);
     const DivideOptions division{
-        .leaf_size = base_case_size,
+        .leaf_points = leaf_points,
         .scheme = options_.division,
         .children = options_.children,
         .stop = options_.stop,
         .smallest_judged = smallest_judged,
-        .largest_undivided = options_.base_case_size == 0 ? kLargestUndivided : 0};
+        .largest_undivided = options_.leaf_points == 0 ? kLargestUndivided : 0};
     const Part<D> root =
         divide<D>(result_.points, result_.input_index, division, task.before.data());
     result_.lists.resize(root.list + 1);
     marks_.resize(root.list + 1);
     boxes_.resize(root.list + 1);
     duplicates_.resize(root.list + 1);
-    base_case_size_ = base_case_size;
+    leaf_points_ = leaf_points;
     root_list_ = root.list;
     PartSurface surface = triangulate_part(root, whole_space<D>(), task);
     result_.dimension = surface.dimension;
@@ -201,7 +201,8 @@ class Run {
       return vertices;
     }
     std::vector<VertexId> dropped;
-    for (const Duplicate& duplicate : duplicates_[part.list]) dropped.push_back(duplicate.dropped);
+    for (const DroppedDuplicate& duplicate : duplicates_[part.list])
+      dropped.push_back(duplicate.dropped);
     std::vector<VertexId> all(part.size());
     std::iota(all.begin(), all.end(), part.begin);
     std::vector<VertexId> vertices;
@@ -220,50 +221,50 @@ class Run {
   Triangulation<D> triangulate_border(SlabArray<Point<D>> points, std::size_t part_size,
                                       Task& task) const {
     const auto count = static_cast<double>(points.size());
-    std::size_t base_case_size = points.size();
+    std::size_t leaf_points = points.size();
     if (count <= kLargestBorder * static_cast<double>(part_size)) {
-      base_case_size = border_base_case_size(points.size(), base_case_size_);
+      leaf_points = border_leaf_points(points.size(), leaf_points_);
     }
-    DelaunayOptions options = options_;
+    DivideAndConquerOptions options = options_;
     options.progress = nullptr;
     return Run(std::move(points), options, false)
-        .triangulate(base_case_size, kSmallestJudgedBorder<D>, task);
+        .triangulate(leaf_points, kSmallestJudgedBorder<D>, task);
   }
 
-  const DelaunayOptions& options_;
+  const DivideAndConquerOptions& options_;
   const bool in_place_;
-  std::size_t base_case_size_ = 0;
+  std::size_t leaf_points_ = 0;
   std::uint32_t root_list_ = 0;
   std::atomic<std::size_t> points_done_ = 0;
   Triangulation<D> result_;
-  std::vector<ListMarks> marks_;                    ///< by list
-  std::vector<RunBoxes<D>> boxes_;                  ///< of leaves, by list
-  std::vector<std::vector<Duplicate>> duplicates_;  ///< by list
+  std::vector<ListMarks> marks_;                           ///< by list
+  std::vector<RunBoxes<D>> boxes_;                         ///< of leaves, by list
+  std::vector<std::vector<DroppedDuplicate>> duplicates_;  ///< by list
 };
 
 }  // namespace
 
 template <int D>
-Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options) {
+Triangulation<D> delaunay_triangulation(std::span<const Point<D>> points,
+                                        const DivideAndConquerOptions& options) {
   struct Release {
     ~Release() { release_base_case_memory(); }
   } const release_at_the_end;
   if (points.size() > kMaxVertices) {
-    throw Error("more than " + std::to_string(kMaxVertices) +
-                    " points: too many for one triangulation in memory",
-                ErrorCode::kTooLarge);
+    throw Failure("more than " + std::to_string(kMaxVertices) +
+                      " points: too many for one triangulation in memory",
+                  ErrorCode::kTooLarge);
   }
-  const std::size_t base_case_size = options.base_case_size == 0
-                                         ? default_base_case_size<D>(points.size())
-                                         : options.base_case_size;
+  const std::size_t leaf_points =
+      options.leaf_points == 0 ? default_leaf_points<D>(points.size()) : options.leaf_points;
   const unsigned threads = options.threads == 0 ? available_threads() : options.threads;
   // With more base cases the memory of the first is worth more for those that follow.
-  const bool in_place = points.size() <= 2 * threads * base_case_size;
+  const bool in_place = points.size() <= 2 * threads * leaf_points;
   Triangulation<D> result;
   Task unused;
   with_threads(threads, [&] {
     result = Run<D>(copy_of(points), options, in_place)
-                 .triangulate(base_case_size, kSmallestJudged,
+                 .triangulate(leaf_points, kSmallestJudged,
                               options.tasks == nullptr ? unused : *options.tasks);
   });
   return result;
@@ -272,11 +273,10 @@ Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOption
 template <int D>
 Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, WorkLease* memory,
                                  Task& task) {
-  const std::size_t base_case_size =
-      std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
-  const DelaunayOptions options{.kernel = kernel, .memory = memory};
+  const std::size_t leaf_points = std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
+  const DivideAndConquerOptions options{.kernel = kernel, .memory = memory};
   return Run<D>(std::move(points), options, false)
-      .triangulate(base_case_size, kSmallestJudgedBorder<D>, task);
+      .triangulate(leaf_points, kSmallestJudgedBorder<D>, task);
 }
 
 template <int D>
@@ -286,9 +286,11 @@ void recycle(Triangulation<D> used) {
 
 template Triangulation<2> border_delaunay<2>(SlabArray<Point<2>>, Kernel, WorkLease*, Task&);
 template Triangulation<3> border_delaunay<3>(SlabArray<Point<3>>, Kernel, WorkLease*, Task&);
-template Triangulation<2> delaunay<2>(std::span<const Point<2>>, const DelaunayOptions&);
-template Triangulation<3> delaunay<3>(std::span<const Point<3>>, const DelaunayOptions&);
+template Triangulation<2> delaunay_triangulation<2>(std::span<const Point<2>>,
+                                                    const DivideAndConquerOptions&);
+template Triangulation<3> delaunay_triangulation<3>(std::span<const Point<3>>,
+                                                    const DivideAndConquerOptions&);
 template void recycle<2>(Triangulation<2>);
 template void recycle<3>(Triangulation<3>);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -10,15 +10,16 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/division/divide.h"
 
-namespace spillway::detail {
-
+namespace spillway::runtime {
 struct Task;
+}
+
+namespace spillway::delaunay {
 
 /// How `delaunay` does its work. None of it changes the set of simplices.
-struct DelaunayOptions {
-  unsigned threads = 0;  ///< 0: as many as the machine has
-  std::size_t base_case_size =
-      0;  ///< largest number of points in one base case; 0: chosen by D and n
+struct DivideAndConquerOptions {
+  unsigned threads = 0;         ///< 0: as many as the machine has
+  std::size_t leaf_points = 0;  ///< largest number of points in one base case; 0: chosen by D and n
   Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts that are merged at a time
   Kernel kernel = Kernel::kSpillway;
@@ -35,10 +36,11 @@ struct DelaunayOptions {
 /// Algorithm 1 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in Shared and
 /// Distributed Memory" (ALENEX 2017). Points must be finite. Equal points become one vertex,
 /// numbered as the first of them in the input. The simplices and their order depend on points,
-/// base_case_size, division and children, never on threads. Throws Error for more than kMaxVertices
+/// leaf_points, division and children, never on threads. Throws Failure for more than kMaxVertices
 /// points, and Interrupted if a stop was requested in time.
 template <int D>
-Triangulation<D> delaunay(std::span<const Point<D>> points, const DelaunayOptions& options = {});
+Triangulation<D> delaunay_triangulation(std::span<const Point<D>> points,
+                                        const DivideAndConquerOptions& options = {});
 
 /// The same, of a border's points, for a caller that is itself one of the tasks of with_threads():
 /// runs on its threads, divides only what is large (a border's parts are nearly all border, so that
@@ -49,10 +51,10 @@ Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, Work
                                  Task& task);
 
 /// Keeps the memory of the simplices of a triangulation that is no longer needed for the next call
-/// of delaunay(), which at its end gives the system what it did not use. Without
+/// of delaunay_triangulation(), which at its end gives the system what it did not use. Without
 /// that, a million points in space take 4 to 14 % longer. release_base_case_memory() gives all to
 /// the system.
 template <int D>
 void recycle(Triangulation<D> used);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

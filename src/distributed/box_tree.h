@@ -5,7 +5,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// The boxes of some ranks, one or more, as a tree for regions that are held against it.
 template <int D>
@@ -23,4 +23,4 @@ struct BoxTree {
   }
 };
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -14,7 +14,7 @@
 #include "src/distributed/merge_halves.h"
 #include "src/error.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 /// One triangulation: of the input, or of the border of two groups.
@@ -176,19 +176,19 @@ class Run {
 }  // namespace
 
 template <int D>
-Share<D> delaunay(std::vector<NamedPoint<D>> points, const Ranks& ranks,
-                  const DistributedOptions<D>& options) {
+Share<D> delaunay_triangulation(std::vector<NamedPoint<D>> points, const Ranks& ranks,
+                                const DistributedOptions<D>& options) {
   if (points.size() > kMaxVertices) {
-    throw Error("rank " + std::to_string(ranks.rank()) + " has more than " +
-                    std::to_string(kMaxVertices) + " points: use more ranks",
-                ErrorCode::kTooLarge);
+    throw Failure("rank " + std::to_string(ranks.rank()) + " has more than " +
+                      std::to_string(kMaxVertices) + " points: use more ranks",
+                  ErrorCode::kTooLarge);
   }
   return Run<D>(ranks, options).triangulate(std::move(points));
 }
 
-template Share<2> delaunay<2>(std::vector<NamedPoint<2>>, const Ranks&,
-                              const DistributedOptions<2>&);
-template Share<3> delaunay<3>(std::vector<NamedPoint<3>>, const Ranks&,
-                              const DistributedOptions<3>&);
+template Share<2> delaunay_triangulation<2>(std::vector<NamedPoint<2>>, const Ranks&,
+                                            const DistributedOptions<2>&);
+template Share<3> delaunay_triangulation<3>(std::vector<NamedPoint<3>>, const Ranks&,
+                                            const DistributedOptions<3>&);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

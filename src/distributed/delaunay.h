@@ -11,7 +11,7 @@
 #include "src/distributed/ranks.h"
 #include "src/distributed/share.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// How ranks triangulate together. None of it changes the set of simplices.
 template <int D>
@@ -26,17 +26,17 @@ struct DistributedOptions {
   ItemLimits limits{};
 };
 
-/// The Delaunay triangulation of all ranks' points, the same one that spillway::detail::delaunay
+/// The Delaunay triangulation of all ranks' points, the same one that delaunay::delaunay_triangulation
 /// makes of them: Algorithms 2 and 3 of Funke and Sanders, "Parallel d-D Delaunay Triangulations in
 /// Shared and Distributed Memory" (ALENEX 2017); docs/algorithm-ranks.md.
 /// Points are finite and may be anywhere: none at some ranks, fewer than ranks, equal ones at
 /// several, of which the first in the order of ranks stands for all.
 ///
 /// Collective. Returns this rank's share; about as many vertices are its own as any other's. Throws
-/// Error if points or simplices of one rank are too many for 32-bit numbers, or for the memory that
+/// Failure if points or simplices of one rank are too many for 32-bit numbers, or for the memory that
 /// it may take; the other ranks then wait in vain, so the job has to be aborted (abort_job).
 template <int D>
-Share<D> delaunay(std::vector<NamedPoint<D>> points, const Ranks& ranks,
-                  const DistributedOptions<D>& options);
+Share<D> delaunay_triangulation(std::vector<NamedPoint<D>> points, const Ranks& ranks,
+                                const DistributedOptions<D>& options);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -5,7 +5,7 @@
 #include "src/distributed/items.h"
 #include "src/distributed/ranks.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// Ranks that follow each other, and the number of the first of them in names of vertices.
 struct Group {
@@ -29,4 +29,4 @@ ItemsByRank<T> exchange_within(const Group& group, ItemsByRank<T> items, const I
   return received;
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

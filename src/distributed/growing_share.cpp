@@ -8,7 +8,7 @@
 #include "src/delaunay/border/acceptance.h"
 #include "src/error.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 std::uint64_t key(RankIndex name) { return (std::uint64_t{name.rank} << 32U) | name.index; }
@@ -43,9 +43,9 @@ void GrowingShare<D>::add_point(const NamedPoint<D>& point) {
   const auto number = static_cast<VertexId>(points_.size());
   if (!foreign_.emplace(key(point.name), number).second) return;
   if (number >= kMaxVertices) {
-    throw Error("one rank's share of the triangulation has " + std::to_string(number) +
-                    " vertices, more than it can number: use more ranks",
-                ErrorCode::kTooLarge);
+    throw Failure("one rank's share of the triangulation has " + std::to_string(number) +
+                      " vertices, more than it can number: use more ranks",
+                  ErrorCode::kTooLarge);
   }
   points_.push_back(point.position);
   names_.push_back(point.name);
@@ -171,4 +171,4 @@ std::uint64_t GrowingShare<D>::bytes() const {
 template class GrowingShare<2>;
 template class GrowingShare<3>;
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -13,7 +13,7 @@
 #include "src/distributed/share.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// A simplex across ranks: the names of its vertices, positively oriented.
 template <int D>
@@ -88,4 +88,4 @@ class GrowingShare {
   std::unordered_map<std::uint64_t, VertexId> foreign_;  ///< points of other ranks by name
 };
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

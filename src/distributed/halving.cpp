@@ -9,7 +9,7 @@
 #include "src/distributed/items.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 /// Cuts by so large a sample are within half a percent of the wanted share, by rank, so that ten of
@@ -130,4 +130,4 @@ template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, con
 template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int,
                                                  const ItemLimits&);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -6,7 +6,7 @@
 #include "src/distributed/ranks.h"
 #include "src/distributed/share.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 template <int D>
 struct NamedPoint {
@@ -22,4 +22,4 @@ template <int D>
 std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const Ranks& group,
                                         int low_ranks, const ItemLimits& limits);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -13,7 +13,7 @@
 #include "src/distributed/ranks.h"
 #include "src/runtime/memory_budget.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 template <typename T>
 using ItemsByRank = std::map<int, std::vector<T>>;
@@ -79,4 +79,4 @@ std::vector<T> gather_item(const Ranks& ranks, const T& item) {
   return items;
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -13,7 +13,7 @@
 
 #include "src/distributed/ranks.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 /// The number that the variable of the environment starts with; `least` if that is none, or less.
@@ -60,4 +60,4 @@ void forget_launch() {
   }
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 template <std::size_t N>
@@ -84,7 +84,7 @@ class Merge {
     const bool works = group_.ranks.rank() < workers;
     const Ranks split = group_.ranks.split(works ? 0 : 1);
     result_.triangulated = points.size();
-    return works ? delaunay<D>(std::move(points), split, options_) : Share<D>{};
+    return works ? delaunay_triangulation<D>(std::move(points), split, options_) : Share<D>{};
   }
 
   /// Sends the simplices of the border's triangulation to those whose shares they may belong to:
@@ -142,4 +142,4 @@ template HalvesMerged merge_halves<2>(GrowingShare<2>&, const Group&, int, unsig
 template HalvesMerged merge_halves<3>(GrowingShare<3>&, const Group&, int, unsigned,
                                       const DistributedOptions<3>&);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

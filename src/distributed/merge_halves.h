@@ -8,7 +8,7 @@
 #include "src/distributed/group.h"
 #include "src/distributed/growing_share.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// What a merge of two halves was at this rank.
 struct HalvesMerged {
@@ -26,4 +26,4 @@ template <int D>
 HalvesMerged merge_halves(GrowingShare<D>& share, const Group& group, int middle, unsigned merge,
                           const DistributedOptions<D>& options);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

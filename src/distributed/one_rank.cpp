@@ -10,7 +10,7 @@
 #include "src/distributed/ranks.h"
 #include "src/error.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 struct Ranks::Group {};
 
@@ -21,7 +21,7 @@ Ranks::~Ranks() = default;
 
 Ranks Ranks::all() {
   if (const int ranks = launch().ranks; ranks > 1) {
-    throw Error(
+    throw Failure(
         fmt::format("this build of Spillway has no MPI, so {} processes cannot work together: "
                     "start it without mpirun, or build it with SPILLWAY_MPI",
                     ranks),
@@ -72,4 +72,4 @@ void abort_job(int exit_code) {
   std::_Exit(exit_code);
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

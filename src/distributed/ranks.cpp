@@ -18,7 +18,7 @@
 #include "src/error.h"
 #include "src/runtime/stage_times.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 enum Tag : int {
@@ -76,7 +76,7 @@ std::string fault(int code, const char* activity) {
 
 void check(int code, const char* activity) {
   if (code != MPI_SUCCESS) {
-    throw Error(fault(code, activity), ErrorCode::kInputOutput);
+    throw Failure(fault(code, activity), ErrorCode::kInputOutput);
   }
 }
 
@@ -180,7 +180,7 @@ void initialise() {
   check(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "starting");
   check(MPI_Comm_rank(MPI_COMM_WORLD, &rank_in_job), "starting");
   if (provided < MPI_THREAD_SERIALIZED) {
-    throw Error(
+    throw Failure(
         "this MPI cannot be called from several threads in turn: it must be built with threads",
         ErrorCode::kInputOutput);
   }
@@ -406,4 +406,4 @@ void abort_job(int exit_code) {
   std::_Exit(exit_code);
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

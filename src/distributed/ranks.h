@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail::distributed {
+#include "src/rooms.h"
+
+namespace spillway::distributed {
 
 /// How many processes this one was started with, itself included, and how many of those on the same
 /// machine: told by the environment, MPI is not touched. 1 if it was started alone.
@@ -46,7 +48,7 @@ enum class Reduction : std::uint8_t { kSum, kLeast, kMost };
 
 /// A group of ranks (a communicator). Functions are collective, called by all ranks of the group in
 /// the same order, unless they say otherwise; by one thread at a time. Messages may be longer than
-/// 2^31 bytes. A fault of MPI is an Error.
+/// 2^31 bytes. A fault of MPI is an Failure.
 class Ranks {
  public:
   /// All ranks of the job. Initialises MPI; to be called once by a process, which leaves MPI in
@@ -107,4 +109,4 @@ void set_largest_piece(std::size_t bytes);
 /// been reported.
 [[noreturn]] void abort_job(int exit_code);
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

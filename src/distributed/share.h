@@ -9,7 +9,7 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 
 /// One of the things that are numbered at each rank for itself.
 struct RankIndex {
@@ -47,4 +47,4 @@ struct Share {
   std::vector<Duplicate> duplicates;  ///< those whose vertex this rank owns, sorted by `dropped`
 };
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

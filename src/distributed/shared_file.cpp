@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::distributed {
 namespace {
 
 [[noreturn]] void fail(const char* activity, const std::string& where, const std::string& file,
@@ -61,4 +61,4 @@ void SharedFile::close() {
   together(ranks_, "close", name_, [&] { return ::close(std::exchange(descriptor_, -1)) == 0; });
 }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::distributed

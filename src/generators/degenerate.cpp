@@ -8,7 +8,7 @@
 #include "src/generators/grid_side.h"
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 /// Row by row through a square or cube of `side` points an axis.
@@ -217,18 +217,19 @@ std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options)
   const auto [family, count, dimension, seed] = options;
   switch (family) {
     case Family::kLattice:
-      return make_indexed(options, Grid{grid_side(count, dimension), dimension}, Lattice{});
+      return make_indexed(options, Grid{grid_side(count, dimension), dimension}, IntegerLattice{});
     case Family::kCircle:
       if (dimension == 2) return make_indexed(options, Circle(seed, count));
       return make_indexed(options, Sphere{seed});
     case Family::kClusters:
       return make_indexed(options, Clusters{seed, dimension});
     case Family::kDuplicates:
-      return make_indexed(options, Duplicates{seed, dimension, grid_side(count, 2)}, Lattice{});
+      return make_indexed(options, Duplicates{seed, dimension, grid_side(count, 2)},
+                          IntegerLattice{});
     case Family::kCollinear:
-      return make_indexed(options, Collinear{seed, dimension}, Lattice{});
+      return make_indexed(options, Collinear{seed, dimension}, IntegerLattice{});
     case Family::kCoplanar:
-      return make_indexed(options, Coplanar{seed, dimension}, Lattice{});
+      return make_indexed(options, Coplanar{seed, dimension}, IntegerLattice{});
     case Family::kUtm:
       return make_indexed(options, Utm{seed, dimension});
     default:
@@ -236,4 +237,4 @@ std::unique_ptr<PointGenerator> make_degenerate(const GeneratorOptions& options)
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

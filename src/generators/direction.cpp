@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 Direction direction_at(double turns) {
   // The series of sine and cosine, for at most an eighth of a turn either way.
@@ -31,4 +31,4 @@ Direction direction_at(double turns) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

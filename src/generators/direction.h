@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::generators {
 
 /// A unit vector of the plane.
 struct Direction {
@@ -12,4 +14,4 @@ struct Direction {
 /// it takes additions and multiplications only.
 Direction direction_at(double turns);
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

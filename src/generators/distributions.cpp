@@ -6,7 +6,7 @@
 #include "src/generators/families.h"
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 struct Uniform {
@@ -106,4 +106,4 @@ std::unique_ptr<PointGenerator> make_distribution(const GeneratorOptions& option
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

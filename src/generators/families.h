@@ -9,13 +9,13 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// Points that depend on the seed and their index alone: point i is sampler(i).
 template <typename Sampler>
 class IndexedGenerator final : public PointGenerator {
  public:
-  IndexedGenerator(std::uint64_t count, Sampler sampler, std::optional<Lattice> lattice)
+  IndexedGenerator(std::uint64_t count, Sampler sampler, std::optional<IntegerLattice> lattice)
       : count_(count), sampler_(std::move(sampler)), lattice_(lattice) {}
 
   std::size_t next(std::span<Point<3>> points) override {
@@ -24,18 +24,20 @@ class IndexedGenerator final : public PointGenerator {
     return n;
   }
 
-  [[nodiscard]] const Lattice* lattice() const override { return lattice_ ? &*lattice_ : nullptr; }
+  [[nodiscard]] const IntegerLattice* lattice() const override {
+    return lattice_ ? &*lattice_ : nullptr;
+  }
 
  private:
   std::uint64_t count_;
   std::uint64_t next_ = 0;
   Sampler sampler_;
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
 };
 
 template <typename Sampler>
 std::unique_ptr<PointGenerator> make_indexed(const GeneratorOptions& options, Sampler sampler,
-                                             std::optional<Lattice> lattice = std::nullopt) {
+                                             std::optional<IntegerLattice> lattice = std::nullopt) {
   return std::make_unique<IndexedGenerator<Sampler>>(options.count, std::move(sampler), lattice);
 }
 
@@ -54,4 +56,4 @@ std::unique_ptr<PointGenerator> make_packing(const GeneratorOptions& options);
 /// scan.
 std::unique_ptr<PointGenerator> make_scan(const GeneratorOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -8,7 +8,7 @@
 #include "src/error.h"
 #include "src/generators/families.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 constexpr std::array<const char*, 15> kNames = {
@@ -46,7 +46,7 @@ std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) 
 }
 
 template <int D>
-std::vector<Point<D>> generate_points(const GeneratorOptions& options) {
+std::vector<Point<D>> generated_points(const GeneratorOptions& options) {
   GeneratorOptions of_dimension = options;
   of_dimension.dimension = D;
   const auto generator = make_generator(of_dimension);
@@ -63,7 +63,7 @@ std::vector<Point<D>> generate_points(const GeneratorOptions& options) {
   return all;
 }
 
-template std::vector<Point<2>> generate_points<2>(const GeneratorOptions&);
-template std::vector<Point<3>> generate_points<3>(const GeneratorOptions&);
+template std::vector<Point<2>> generated_points<2>(const GeneratorOptions&);
+template std::vector<Point<3>> generated_points<3>(const GeneratorOptions&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -14,7 +14,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// One family of points, described in docs/generators.md. From kClusters on they are extremes for
 /// tests.
@@ -64,16 +64,16 @@ class PointGenerator {
   /// The lattice of families that consist of integers (lattice, duplicates, collinear, coplanar:
   /// the unit one; terrain: centimetres at UTM offsets; scan: tenths of millimetres), nullptr for
   /// the others. Points of such families come as integers.
-  [[nodiscard]] virtual const Lattice* lattice() const { return nullptr; }
+  [[nodiscard]] virtual const IntegerLattice* lattice() const { return nullptr; }
 };
 
-/// The stream of those points. Throws InvalidArgument for a dimension other than 2 and 3, and Error
+/// The stream of those points. Throws InvalidArgument for a dimension other than 2 and 3, and Failure
 /// for a terrain so large that its centimetres would leave the 32-bit integers of LAS.
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options);
 
 /// All points at once, for tests and benchmarks, generated with dimension D whatever the options
 /// say. Families with a lattice give integers.
 template <int D>
-std::vector<Point<D>> generate_points(const GeneratorOptions& options);
+std::vector<Point<D>> generated_points(const GeneratorOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

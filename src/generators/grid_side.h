@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::generators {
 
 /// The smallest side with side^dimension >= count, at least 1.
 inline std::uint64_t grid_side(std::uint64_t count, int dimension) {
@@ -18,4 +20,4 @@ inline std::uint64_t grid_side(std::uint64_t count, int dimension) {
   return side;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -4,7 +4,7 @@
 
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 /// Perlin's quintic: from 0 at 0 to 1 at 1 with two derivatives vanishing at both.
@@ -65,4 +65,4 @@ void Noise::add_row(std::int64_t x, std::int64_t y, float amplitude,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

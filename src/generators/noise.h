@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <span>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::generators {
 
 /// Gradient noise in the plane (Perlin, "Improving Noise", SIGGRAPH 2002): smooth, of mean 0 and
 /// standard deviation about 0.2, with hills about as wide as the wavelength. It is evaluated along
@@ -28,4 +30,4 @@ class Noise {
   int log2_wavelength_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -10,7 +10,7 @@
 #include "src/generators/random.h"
 #include "src/generators/shuffle.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 // Of Cu64Zr36, in angstrom.
@@ -150,4 +150,4 @@ std::unique_ptr<PointGenerator> make_packing(const GeneratorOptions& options) {
   return make_indexed(options, Packing<SpaceSites>(seed, count));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 double portable_log(double x) {
   // x = 2^exponent * mantissa with the mantissa around 1; then log(mantissa) is the series of
@@ -41,4 +41,4 @@ std::array<double, 2> Random::normal_pair() {
   return {p.u * factor, p.v * factor};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::generators {
 
 /// A bijection of 64-bit integers whose bits look random: the finalizer of SplitMix64 (Steele, Lea,
 /// Flood, "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014).
@@ -56,4 +58,4 @@ class Random {
 /// additions, multiplications and divisions only.
 double portable_log(double x);
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 // Octaves of the ground, wavelength 2^k metres. The mountains carry water surfaces; the hills and
@@ -115,7 +115,7 @@ void Relief::rasterise(std::int64_t y, std::size_t slot) {
     if (y / p.spacing != p.row) plant(p, y / p.spacing);
   }
   survey(first_, y, ground_, dryness_);
-  Cell* cells = &cells_[slot * columns_];
+  ReliefCell* cells = &cells_[slot * columns_];
   for (std::size_t i = 0; i < columns_; ++i) {
     cells[i] = {};
     cells[i].ground = ground_[i];
@@ -152,7 +152,7 @@ void Relief::build(std::int64_t row) {
   }
 }
 
-void Relief::draw_buildings(std::int64_t y, Cell* cells) const {
+void Relief::draw_buildings(std::int64_t y, ReliefCell* cells) const {
   for (const Building& b : buildings_) {
     if (y < b.y || y >= b.y + b.depth) continue;
     const std::int64_t begin = std::max(b.x, first_);
@@ -163,7 +163,7 @@ void Relief::draw_buildings(std::int64_t y, Cell* cells) const {
       const float half = 0.5F * static_cast<float>(ridge_along_x ? b.depth : b.width);
       const float across = static_cast<float>(ridge_along_x ? y - b.y : x - b.x) + 0.5F - half;
       const float slope = across > 0 ? -b.pitch : b.pitch;
-      Cell& cell = cells[x - first_];
+      ReliefCell& cell = cells[x - first_];
       cell.cover = Cover::kRoof;
       cell.top = b.eaves + b.pitch * (half - std::abs(across));
       cell.slope_x = ridge_along_x ? 0 : slope;
@@ -197,7 +197,7 @@ void Relief::plant(Plantation& plantation, std::int64_t row) {
   }
 }
 
-void Relief::draw_trees(std::int64_t y, const Plantation& plantation, Cell* cells) const {
+void Relief::draw_trees(std::int64_t y, const Plantation& plantation, ReliefCell* cells) const {
   const float in_row = static_cast<float>(y - plantation.row * plantation.spacing) + 0.5F;
   for (const Tree& tree : plantation.trees) {
     const float dy = in_row - tree.y;
@@ -216,4 +216,4 @@ void Relief::draw_trees(std::int64_t y, const Plantation& plantation, Cell* cell
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

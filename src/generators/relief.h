@@ -11,13 +11,13 @@
 #include "src/generators/noise.h"
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// What lies on top of a cell.
 enum class Cover : std::uint8_t { kOpen, kWater, kRoof, kCrown };
 
 /// One square metre; (0, 0) is its corner of smallest coordinates. Metres throughout.
-struct Cell {
+struct ReliefCell {
   float ground = 0;   ///< elevation of the ground at the corner
   float top = 0;      ///< kRoof: elevation at the centre; kCrown: height above the ground
   float slope_x = 0;  ///< kRoof: rise per metre
@@ -34,7 +34,7 @@ class Relief {
   void set_window(std::int64_t first, std::size_t columns, std::size_t rows);
 
   /// The cells of row y, valid until a row that is further away than the window is asked for.
-  const Cell* row(std::int64_t y) {
+  const ReliefCell* row(std::int64_t y) {
     const std::size_t slot = static_cast<std::size_t>(y) & slot_mask_;
     if (row_in_slot_[slot] != y) rasterise(y, slot);
     return &cells_[slot * columns_];
@@ -63,8 +63,8 @@ class Relief {
   void rasterise(std::int64_t y, std::size_t slot);
   void build(std::int64_t row);
   void plant(Plantation& plantation, std::int64_t row);
-  void draw_buildings(std::int64_t y, Cell* cells) const;
-  void draw_trees(std::int64_t y, const Plantation& plantation, Cell* cells) const;
+  void draw_buildings(std::int64_t y, ReliefCell* cells) const;
+  void draw_trees(std::int64_t y, const Plantation& plantation, ReliefCell* cells) const;
 
   std::uint64_t seed_;
   std::vector<Noise> mountains_, hills_;
@@ -78,8 +78,8 @@ class Relief {
   std::size_t columns_ = 0;
   std::size_t slot_mask_ = 0;
   std::vector<std::int64_t> row_in_slot_;
-  std::vector<Cell> cells_;
+  std::vector<ReliefCell> cells_;
   std::vector<float> ground_, dryness_, detail_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

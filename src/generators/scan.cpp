@@ -12,7 +12,7 @@
 #include "src/generators/scan_column.h"
 #include "src/generators/scan_scene.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 constexpr double kScale = 0.0001;  // metres a lattice step
@@ -112,10 +112,10 @@ class Scan final : public PointGenerator {
     return n;
   }
 
-  [[nodiscard]] const Lattice* lattice() const override { return &kLattice; }
+  [[nodiscard]] const IntegerLattice* lattice() const override { return &kLattice; }
 
  private:
-  static constexpr Lattice kLattice{{kScale, kScale, kScale}, {0, 0, 0}};
+  static constexpr IntegerLattice kLattice{{kScale, kScale, kScale}, {0, 0, 0}};
 
   /// A few more than it takes, so that the last station all but finishes its turn.
   [[nodiscard]] double rays_of_a_station(std::uint64_t count) const {
@@ -180,4 +180,4 @@ std::unique_ptr<PointGenerator> make_scan(const GeneratorOptions& options) {
   return std::make_unique<Scan>(options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

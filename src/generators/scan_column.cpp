@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 void ScanColumn::aim(const Point<3>& station, const Direction& azimuth) {
   for (std::size_t i = 0; i <= kSteps; ++i) {
@@ -97,4 +97,4 @@ std::optional<double> ScanColumn::first_hit(const Direction& elevation) {
   return *hit / elevation.cosine;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -7,7 +7,7 @@
 
 #include "src/generators/scan_scene.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// What a scanner sees while its mirror swings up once: the half plane that a column of rays lies
 /// in, with the ground and the buildings that it cuts. There a ray is a line of one slope. Rays
@@ -56,4 +56,4 @@ class ScanColumn {
   std::size_t ground_step_ = 0;              // up to which it is above the ground
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -8,7 +8,7 @@
 #include "src/generators/random.h"
 #include "src/generators/shuffle.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 // The streets leave plots that are squares; a station stands where two streets cross.
@@ -114,4 +114,4 @@ ScanScene::ScanScene(std::uint64_t seed) : ground(key_of(seed, kGroundNoise)) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -9,7 +9,7 @@
 #include "src/generators/direction.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// How far a scanner sees.
 constexpr double kScanRange = 120;
@@ -45,4 +45,4 @@ struct ScanScene {
   std::vector<Point<3>> stations;       ///< 3 to 6: the scanner's mirror, 1.7 metres above ground
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

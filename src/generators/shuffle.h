@@ -6,7 +6,7 @@
 
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// A seeded permutation of [0, count) in constant memory. A bijection of the numbers of as many
 /// bits as count - 1 has is applied until it leads below count ("cycle walking": J. Black, P.
@@ -47,4 +47,4 @@ class Shuffle {
   std::array<std::uint64_t, 4> keys_{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

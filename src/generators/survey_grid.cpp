@@ -4,7 +4,7 @@
 
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 /// How far a line strays from its place among even ones, in sides of a mean tile.
@@ -49,4 +49,4 @@ std::size_t SurveyGrid::tile_of(const Point<3>& point, std::uint64_t index) cons
   return row * (x_.lines.size() + 1) + column;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

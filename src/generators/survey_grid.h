@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 
 /// What a survey is cut into.
 struct SurveyGridShape {
@@ -47,4 +47,4 @@ class SurveyGrid {
   std::uint64_t seed_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

@@ -13,7 +13,7 @@
 #include "src/generators/random.h"
 #include "src/generators/relief.h"
 
-namespace spillway::detail {
+namespace spillway::generators {
 namespace {
 
 constexpr double kScale = 0.01;  // metres a lattice step
@@ -44,7 +44,7 @@ struct FlightPlan {
         std::max(least_pulses, static_cast<double>(count) / kPointsPerPulse) / kSwathPerDistance;
     side = std::max(kLeastSide, std::sqrt(pulses_per_area / kDensity));
     if (side > kLargestSide) {
-      throw Error(
+      throw Failure(
           fmt::format(
               "cannot make a terrain of {} points: its coordinates in centimetres would leave the "
               "32-bit integers of LAS; ask for at most 10^15",
@@ -125,10 +125,10 @@ class Terrain final : public PointGenerator {
     return n;
   }
 
-  [[nodiscard]] const Lattice* lattice() const override { return &kLattice; }
+  [[nodiscard]] const IntegerLattice* lattice() const override { return &kLattice; }
 
  private:
-  static constexpr Lattice kLattice{{kScale, kScale, kScale}, {500000, 4100000, 0}};
+  static constexpr IntegerLattice kLattice{{kScale, kScale, kScale}, {500000, 4100000, 0}};
 
   void begin_line() {
     line_centre_ = kMargin + plan_.line_distance * (line_ + 0.5);
@@ -208,8 +208,8 @@ std::size_t Terrain::sweep(std::span<Point<3>> points) {
     const auto row = static_cast<std::int64_t>(y);
     const double dx = x - static_cast<double>(column);
     const double dy = y - static_cast<double>(row);
-    const Cell* below = relief_.row(row) + (column - first_column_);
-    const Cell* above = relief_.row(row + 1) + (column - first_column_);
+    const ReliefCell* below = relief_.row(row) + (column - first_column_);
+    const ReliefCell* above = relief_.row(row + 1) + (column - first_column_);
 
     const std::uint32_t chance = bits.take(10);
     if (below->cover == Cover::kWater && chance >= kWaterReturns) continue;
@@ -251,4 +251,4 @@ std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options) {
   return std::make_unique<Terrain>(options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::generators

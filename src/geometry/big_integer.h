@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// A signed integer of any size; those of ordinary coordinates need no memory from the heap.
 using BigInt = boost::multiprecision::number<
@@ -20,7 +20,7 @@ using BigInt = boost::multiprecision::number<
 /// A power of two that makes integers of all doubles it has been told of.
 class CommonScale {
  public:
-  /// Throws Error if the value is not finite.
+  /// Throws Failure if the value is not finite.
   void include(double value) {
     const Split s = split(value);
     if (s.mantissa != 0) exponent_ = std::min(exponent_, s.exponent);
@@ -49,8 +49,9 @@ class CommonScale {
 
   static Split split(double value) {
     if (!std::isfinite(value)) {
-      throw Error("a coordinate is not a finite number: predicates are defined on finite ones only",
-                  ErrorCode::kInvalidArgument);
+      throw Failure(
+          "a coordinate is not a finite number: predicates are defined on finite ones only",
+          ErrorCode::kInvalidArgument);
     }
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
@@ -60,4 +61,4 @@ class CommonScale {
   int exponent_ = std::numeric_limits<int>::max();
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

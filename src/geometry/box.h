@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// A closed axis-parallel box. Default-constructed it is empty (lo > hi on every axis).
 template <int D>
@@ -101,4 +101,4 @@ Box<2> plane_of(const Box<D>& box) {
   return {{box.lo[0], box.lo[1]}, {box.hi[0], box.hi[1]}};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

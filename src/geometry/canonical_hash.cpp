@@ -6,7 +6,7 @@
 
 #include <bit>
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -52,4 +52,4 @@ template std::uint64_t vertex_hash<3>(Point<3>);
 template class CanonicalHash<2>;
 template class CanonicalHash<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

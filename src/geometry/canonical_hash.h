@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The fingerprint of a vertex: XXH3-64 of its output coordinates (x, y or x, y, z as little-endian
 /// doubles, negative zero counted as zero).
@@ -55,4 +55,4 @@ class CanonicalHash {
 /// The hash as it is printed everywhere: 16 lower-case hexadecimal digits.
 std::string hash_to_hex(std::uint64_t hash);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

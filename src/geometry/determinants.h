@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/strict_arithmetic.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// N vectors of D components each.
 template <int D, int N, typename T>
@@ -64,4 +64,4 @@ T in_sphere_determinant(const Vectors<D, D + 1, T>& v) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -6,7 +6,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/strict_arithmetic.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 namespace distance_stages {
 
@@ -37,11 +37,11 @@ int exact(const Point<D>& place, const Point<D>& a, const Point<D>& b);
 }  // namespace distance_stages
 
 /// The sign of |a - place| - |b - place|: -1 if `a` is nearer, 0 if both are equally far. Exact for
-/// all finite doubles. Throws Error if a coordinate is not finite.
+/// all finite doubles. Throws Failure if a coordinate is not finite.
 template <int D>
 int compare_distances(const Point<D>& place, const Point<D>& a, const Point<D>& b) {
   if (const auto answer = distance_stages::filtered<D>(place, a, b)) return *answer;
   return distance_stages::exact<D>(place, a, b);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

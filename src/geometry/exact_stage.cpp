@@ -3,7 +3,7 @@
 #include "src/geometry/big_integer.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::stages {
+namespace spillway::geometry::stages {
 template <typename P>
 int exact(const Points<P>& points) {
   constexpr int D = P::kDimension;
@@ -23,4 +23,4 @@ template int exact<Orientation<3>>(const Points<Orientation<3>>&);
 template int exact<InSphere<2>>(const Points<InSphere<2>>&);
 template int exact<InSphere<3>>(const Points<InSphere<3>>&);
 
-}  // namespace spillway::detail::stages
+}  // namespace spillway::geometry::stages

@@ -4,7 +4,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// Three numbers in the coordinates that Frame stands for. Nothing but the type tells it from a
 /// Point<3>, which becomes one only where that is said.
@@ -39,4 +39,4 @@ using WorldPoint = FramedPoint<struct WorldFrame>;
 /// output units.
 using PlacedPoint = FramedPoint<struct PlacedFrame>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 constexpr double kMostExact = 0x1p53;  // integers up to it are doubles
@@ -27,7 +27,7 @@ double unit_of(double value) {
 
 }  // namespace
 
-std::optional<double> Lattice::to_integer(int axis, double world) const {
+std::optional<double> IntegerLattice::to_integer(int axis, double world) const {
   const double guess = std::round((world - offset[axis]) / scale[axis]);
   for (const double candidate : {guess, guess - 1, guess + 1}) {
     if (to_world(axis, candidate) == world) return candidate;
@@ -44,7 +44,7 @@ std::optional<double> Lattice::to_integer(int axis, double world) const {
 /// difference by another p / 2, and the quotient's own rounding is worth p at most: less than 3 / 2
 /// of a step, which to_integer() makes good, if scale > 2 p + w. Without an offset only product and
 /// quotient are rounded, and scale > p will do.
-bool Lattice::keeps_apart(int axis, double lo, double hi) const {
+bool IntegerLattice::keeps_apart(int axis, double lo, double hi) const {
   if (!is_finite(axis, lo - 1, hi + 1)) return false;
   const double integer = std::max(std::abs(lo), std::abs(hi)) + 1;
   const double step = std::abs(scale[axis]);
@@ -57,15 +57,15 @@ bool Lattice::keeps_apart(int axis, double lo, double hi) const {
   return step > 2 * step_at(product) + step_at(world);
 }
 
-bool Lattice::is_finite(int axis, double lo, double hi) const {
+bool IntegerLattice::is_finite(int axis, double lo, double hi) const {
   return std::isfinite(to_world(axis, hi) - to_world(axis, lo));
 }
 
-bool Lattice::isotropic(int dimensions) const {
+bool IntegerLattice::isotropic(int dimensions) const {
   for (int k = 1; k < dimensions; ++k) {
     if (scale[k] != scale[0]) return false;
   }
   return true;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -5,16 +5,16 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The affine map from integer coordinates to output coordinates: world = integer * scale + offset,
 /// evaluated in double in exactly this way (one multiplication, one addition, each rounded to
 /// nearest). Axes are x, y, z. Integers are held as doubles and are exact below 2^53.
-struct Lattice {
+struct IntegerLattice {
   std::array<double, 3> scale{1, 1, 1};
   std::array<double, 3> offset{0, 0, 0};
 
-  bool operator==(const Lattice&) const = default;
+  bool operator==(const IntegerLattice&) const = default;
 
   [[nodiscard]] double to_world(int axis, double integer) const {
     return integer * scale[axis] + offset[axis];
@@ -40,8 +40,9 @@ struct Lattice {
 };
 
 /// A point of what has this lattice, or none, in output coordinates.
-inline WorldPoint in_world(const std::optional<Lattice>& lattice, const LatticePoint& point) {
+inline WorldPoint in_world(const std::optional<IntegerLattice>& lattice,
+                           const LatticePoint& point) {
   return lattice ? lattice->to_world(point) : WorldPoint(point.numbers());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -8,17 +8,17 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
-bool is_exact_on(int axis, const Lattice& lattice, const Box<3>& integers, int dimension) {
+bool is_exact_on(int axis, const IntegerLattice& lattice, const Box<3>& integers, int dimension) {
   const double lo = integers.lo[axis];
   const double hi = integers.hi[axis];
   return axis < dimension ? lattice.keeps_apart(axis, lo, hi) : lattice.is_finite(axis, lo, hi);
 }
 
 /// What is wrong with the lattice, or "" if it is_exact().
-std::string fault_of(const Lattice& lattice, const Box<3>& integers, int dimension) {
+std::string fault_of(const IntegerLattice& lattice, const Box<3>& integers, int dimension) {
   if (integers.empty()) return "";
   int axis = 0;
   while (axis < 3 && is_exact_on(axis, lattice, integers, dimension)) ++axis;
@@ -39,7 +39,7 @@ std::string fault_of(const Lattice& lattice, const Box<3>& integers, int dimensi
 
 }  // namespace
 
-bool is_exact(const Lattice& lattice, const Box<3>& integers, int dimension) {
+bool is_exact(const IntegerLattice& lattice, const Box<3>& integers, int dimension) {
   if (integers.empty()) return true;
   for (int axis = 0; axis < 3; ++axis) {
     if (!is_exact_on(axis, lattice, integers, dimension)) return false;
@@ -47,7 +47,7 @@ bool is_exact(const Lattice& lattice, const Box<3>& integers, int dimension) {
   return true;
 }
 
-void check_lattice(const FileSpot& where, const Lattice& lattice, const Box<3>& integers,
+void check_lattice(const FileSpot& where, const IntegerLattice& lattice, const Box<3>& integers,
                    int dimension) {
   const std::string fault = fault_of(lattice, integers, dimension);
   if (fault.empty()) return;
@@ -56,13 +56,13 @@ void check_lattice(const FileSpot& where, const Lattice& lattice, const Box<3>& 
                             "smaller offset");
 }
 
-void check_lattice_to_write(const std::string& file, const Lattice& lattice, const Box<3>& integers,
-                            int dimension, Remedy remedy) {
+void check_lattice_to_write(const std::string& file, const IntegerLattice& lattice,
+                            const Box<3>& integers, int dimension, Remedy remedy) {
   const std::string fault = fault_of(lattice, integers, dimension);
   if (!fault.empty()) throw CannotWrite(file, fault, ErrorCode::kInvalidArgument, {}, remedy);
 }
 
-double exact_up_to(const Lattice& lattice, int dimension) {
+double exact_up_to(const IntegerLattice& lattice, int dimension) {
   for (double most = 0x1p53; most >= 1; most /= 2) {
     if (is_exact(lattice, {{-most, -most, -most}, {most, most, most}}, dimension)) return most;
   }
@@ -83,7 +83,7 @@ bool any_beyond(std::span<const LatticePoint> points, double most) {
   return sums > kLargestBits;
 }
 
-Box<3> nearest_integers(const Lattice& lattice, const Box<3>& world) {
+Box<3> nearest_integers(const IntegerLattice& lattice, const Box<3>& world) {
   Box<3> box;
   for (const Point<3>& corner : {world.lo, world.hi}) {
     Point<3> integers;
@@ -95,7 +95,7 @@ Box<3> nearest_integers(const Lattice& lattice, const Box<3>& world) {
   return box;
 }
 
-Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {
+Box<3> integers_of(const IntegerLattice& lattice, const Box<3>& world) {
   Box<3> integers;
   if (world.empty()) return integers;
   for (int axis = 0; axis < 3; ++axis) {
@@ -107,4 +107,4 @@ Box<3> integers_of(const Lattice& lattice, const Box<3>& world) {
   return integers;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

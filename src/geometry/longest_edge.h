@@ -3,7 +3,9 @@
 #include <array>
 #include <cstddef>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::geometry {
 
 /// Whether two corners of a simplex are further apart than `length`, in their first D coordinates:
 /// D = 2 measures the triangles of a terrain in the plane. Squares are compared, as doubles; what
@@ -26,4 +28,4 @@ template <int D, std::size_t E, std::size_t N>
   return false;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::geometry {
 
 /// Square pixels, north up: column 0 is the westernmost, row 0 the northernmost.
 struct PixelGrid {
@@ -23,4 +25,4 @@ struct PixelGrid {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

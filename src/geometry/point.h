@@ -1,20 +1,16 @@
 #pragma once
 
-#include <array>
+#include <spillway/point_view.h>
 #include <cstdint>
 #include <limits>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::geometry {
 
 /// The dimensions that Spillway triangulates.
 template <int D>
 concept SupportedDimension = (D == 2 || D == 3);
-
-/// A point: D double coordinates. Comparison is lexicographic, which is also the order that breaks
-/// ties between cocircular and cospherical points.
-template <int D>
-requires SupportedDimension<D>
-using Point = std::array<double, D>;
 
 /// Number of a vertex within one in-memory triangulation.
 using VertexId = std::uint32_t;
@@ -28,4 +24,4 @@ inline constexpr VertexId kNoVertex = kInfiniteVertex - 1;
 /// The largest number of points that one in-memory triangulation holds.
 inline constexpr std::size_t kMaxVertices = kNoVertex;
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

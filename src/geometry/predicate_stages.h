@@ -14,7 +14,7 @@
 
 #include "src/geometry/determinants.h"
 
-namespace spillway::detail::stages {
+namespace spillway::geometry::stages {
 
 /// Unit roundoff of double: half a unit in the last place of 1.
 inline constexpr double kRoundoff = 0x1p-53;
@@ -128,9 +128,9 @@ std::optional<int> integer(const Points<P>& points) {
   return sign(P::determinant(v));
 }
 
-/// Stage 3: exact for all finite doubles, by big integers. Throws Error if a coordinate is not
+/// Stage 3: exact for all finite doubles, by big integers. Throws Failure if a coordinate is not
 /// finite.
 template <typename P>
 int exact(const Points<P>& points);
 
-}  // namespace spillway::detail::stages
+}  // namespace spillway::geometry::stages

@@ -4,7 +4,7 @@
 
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 template <typename P>
@@ -63,4 +63,4 @@ template int side_of_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
 template int in_sphere<2>(const std::array<Point<2>, 3>&, const Point<2>&);
 template int in_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -21,7 +21,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/strict_arithmetic.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The sign of det[p1-p0, ..., pD-p0]: +1 if the D+1 points are positively oriented (2D:
 /// counter-clockwise; 3D: seen from the last, the first three run counter-clockwise), -1 if
@@ -39,4 +39,4 @@ int side_of_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p
 template <int D>
 int in_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

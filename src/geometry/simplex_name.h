@@ -1,10 +1,12 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::geometry {
 
 /// What the simplices of a mesh are called.
 inline const char* simplices_of(int dimension) {
   return dimension == 2 ? "triangles" : "tetrahedra";
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

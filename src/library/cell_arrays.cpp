@@ -9,7 +9,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 16;
@@ -137,4 +137,4 @@ template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<3>&, cons
 template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<2>&, const CellNumbers<2>&);
 template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<3>&, const CellNumbers<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -9,7 +9,7 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/library/cell_numbers.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// A triangulation as plain arrays of numbers: vertices by their place in the input, finite cells
 /// alone. The members are what the functions of the same names of spillway::Delaunay return.
@@ -45,4 +45,4 @@ constexpr std::array<int, D> facet_places(int i) {
   return places;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

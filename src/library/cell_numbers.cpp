@@ -5,7 +5,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 constexpr std::size_t kGrain = std::size_t{1} << 10;  // chunks
@@ -51,4 +51,4 @@ CellNumbers<D>::CellNumbers(const Triangulation<D>& triangulation) {
 template class CellNumbers<2>;
 template class CellNumbers<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

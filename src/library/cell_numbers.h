@@ -8,7 +8,7 @@
 #include "src/delaunay/common/slab_array.h"
 #include "src/delaunay/common/triangulation.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// The numbers of a triangulation's finite simplices, from 0 in the order of its lists. A bit tells
 /// of each slot whether it has one; 64 slots share the number of the first. So all that is looked
@@ -63,4 +63,4 @@ class CellNumbers {
   std::size_t count_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -16,10 +16,10 @@
 #include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
-using PublicError = spillway::Error;
+using PublicError = Error;
 
 constexpr std::size_t kGrain = std::size_t{1} << 14;
 
@@ -70,14 +70,14 @@ class ProgressTeller {
 };
 
 template <int D>
-Triangulation<D> triangulate(std::span<const Point<D>> points,
-                             const spillway::DelaunayOptions& options, unsigned threads) {
+Triangulation<D> triangulate(std::span<const Point<D>> points, const DelaunayOptions& options,
+                             unsigned threads) {
   ProgressTeller teller(options.progress, points.size());
-  detail::DelaunayOptions engine;
+  delaunay::DivideAndConquerOptions engine;
   engine.threads = threads;
   engine.stop = options.stop;
   if (options.progress) engine.progress = [&](std::size_t done) { teller.tell(done); };
-  return delaunay<D>(points, engine);
+  return delaunay_triangulation<D>(points, engine);
 }
 
 /// Throws unless the points span D dimensions.
@@ -96,8 +96,8 @@ void require_span(int dimension, int needed, std::size_t points) {
 }
 
 template <int D, class Index>
-std::vector<spillway::Duplicate<Index>> list_duplicates(const Triangulation<D>& triangulation) {
-  std::vector<spillway::Duplicate<Index>> duplicates;
+std::vector<Duplicate<Index>> list_duplicates(const Triangulation<D>& triangulation) {
+  std::vector<Duplicate<Index>> duplicates;
   duplicates.reserve(triangulation.duplicates.size());
   for (const auto& [dropped, kept] : triangulation.duplicates) {
     duplicates.push_back({static_cast<Index>(triangulation.input_index[dropped]),
@@ -117,7 +117,7 @@ void require_numbers(std::size_t count, std::size_t most, const std::string& thi
 }
 
 template <int D, class Index>
-MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::DelaunayOptions& options) {
+MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& options) {
   if (options.threads > kMostThreads) {
     throw PublicError(
         ErrorCode::kInvalidArgument,
@@ -141,13 +141,9 @@ MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::Delauna
   return mesh;
 }
 
-template MeshData<2, std::int32_t> make_mesh<2>(const PointView<2>&,
-                                                const spillway::DelaunayOptions&);
-template MeshData<3, std::int32_t> make_mesh<3>(const PointView<3>&,
-                                                const spillway::DelaunayOptions&);
-template MeshData<2, std::int64_t> make_mesh<2>(const PointView<2>&,
-                                                const spillway::DelaunayOptions&);
-template MeshData<3, std::int64_t> make_mesh<3>(const PointView<3>&,
-                                                const spillway::DelaunayOptions&);
+template MeshData<2, std::int32_t> make_mesh<2>(const PointView<2>&, const DelaunayOptions&);
+template MeshData<3, std::int32_t> make_mesh<3>(const PointView<3>&, const DelaunayOptions&);
+template MeshData<2, std::int64_t> make_mesh<2>(const PointView<2>&, const DelaunayOptions&);
+template MeshData<3, std::int64_t> make_mesh<3>(const PointView<3>&, const DelaunayOptions&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

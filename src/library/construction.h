@@ -13,7 +13,7 @@
 #include "src/library/cell_arrays.h"
 #include "src/library/mesh_view.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// What a triangulation is made into.
 template <int D, class Index>
@@ -21,7 +21,7 @@ struct MeshData {
   unsigned threads = 1;
   SlabArray<Point<D>> points;
   CellArrays<Index> cells;
-  std::vector<spillway::Duplicate<Index>> duplicates;
+  std::vector<Duplicate<Index>> duplicates;
 
   [[nodiscard]] MeshView<D, Index> view() const {
     return {span_of(points), span_of(cells.vertices), span_of(cells.neighbours),
@@ -29,11 +29,11 @@ struct MeshData {
   }
 };
 
-/// Throws spillway::Error as the constructor of spillway::Delaunay says.
+/// Throws Error as the constructor of spillway::Delaunay says.
 template <int D, class Index>
-MeshData<D, Index> make_mesh(const PointView<D>& points, const spillway::DelaunayOptions& options);
+MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& options);
 
-/// Throws spillway::Error(kTooLarge) if there are more than `most` of these things.
+/// Throws Error(kTooLarge) if there are more than `most` of these things.
 void require_numbers(std::size_t count, std::size_t most, const std::string& things);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -33,7 +33,7 @@ std::vector<Answer> answer_all(
     unsigned threads, const PointView<D>& places, Answer none,
     const std::function<void(std::span<const Point<D>>, std::span<Answer>)>& answer) {
   std::vector<Answer> answers(places.size(), none);
-  detail::for_each_near<D>(
+  library::for_each_near<D>(
       places.size(), threads, [&](std::size_t i) { return places[i]; },
       [&](std::span<const Point<D>> near, std::span<const std::size_t> numbers) {
         std::vector<Answer> some(near.size());
@@ -46,21 +46,21 @@ std::vector<Answer> answer_all(
 }  // namespace
 
 template <int D, class Index>
-struct Delaunay<D, Index>::Mesh : detail::MeshData<D, Index> {
-  explicit Mesh(detail::MeshData<D, Index> data) : detail::MeshData<D, Index>(std::move(data)) {}
+struct Delaunay<D, Index>::Mesh : library::MeshData<D, Index> {
+  explicit Mesh(library::MeshData<D, Index> data) : library::MeshData<D, Index>(std::move(data)) {}
 
-  [[nodiscard]] const detail::StartTree<D, Index>& starts() const {
+  [[nodiscard]] const library::StartTree<D, Index>& starts() const {
     return starts_.of(this->view(), this->threads);
   }
 
  private:
-  detail::SearchStarts<D, Index> starts_;
+  library::SearchStarts<D, Index> starts_;
 };
 
 template <int D, class Index>
 Delaunay<D, Index>::Delaunay(PointView<D> points, const DelaunayOptions& options) {
-  const detail::FloatEnvironment environment;
-  mesh_ = std::make_unique<const Mesh>(detail::make_mesh<D, Index>(points, options));
+  const library::FloatEnvironment environment;
+  mesh_ = std::make_unique<const Mesh>(library::make_mesh<D, Index>(points, options));
 }
 
 template <int D, class Index>
@@ -87,27 +87,27 @@ std::size_t Delaunay<D, Index>::cell_count() const {
 
 template <int D, class Index>
 std::span<const Point<D>> Delaunay<D, Index>::points() const {
-  return detail::span_of(mesh_->points);
+  return library::span_of(mesh_->points);
 }
 
 template <int D, class Index>
 std::span<const Index> Delaunay<D, Index>::cell_vertices() const {
-  return detail::span_of(mesh_->cells.vertices);
+  return library::span_of(mesh_->cells.vertices);
 }
 
 template <int D, class Index>
 std::span<const Index> Delaunay<D, Index>::cell_neighbours() const {
-  return detail::span_of(mesh_->cells.neighbours);
+  return library::span_of(mesh_->cells.neighbours);
 }
 
 template <int D, class Index>
 std::span<const Index> Delaunay<D, Index>::hull_facets() const {
-  return detail::span_of(mesh_->cells.hull_facets);
+  return library::span_of(mesh_->cells.hull_facets);
 }
 
 template <int D, class Index>
 std::span<const Index> Delaunay<D, Index>::hull_cells() const {
-  return detail::span_of(mesh_->cells.hull_cells);
+  return library::span_of(mesh_->cells.hull_cells);
 }
 
 template <int D, class Index>
@@ -117,7 +117,7 @@ std::span<const Duplicate<Index>> Delaunay<D, Index>::duplicates() const {
 
 template <int D, class Index>
 std::span<const Index> Delaunay<D, Index>::vertex_cells() const {
-  return detail::span_of(mesh_->cells.vertex_cells);
+  return library::span_of(mesh_->cells.vertex_cells);
 }
 
 template <int D, class Index>
@@ -126,23 +126,23 @@ Point<D> Delaunay<D, Index>::circumcentre(Index cell) const {
     throw Error(ErrorCode::kInvalidArgument,
                 fmt::format("there is no cell {}: the mesh has {}", cell, cell_count()));
   }
-  const detail::FloatEnvironment environment;
-  return detail::circumcentre<D>(mesh_->view().corners(cell));
+  const library::FloatEnvironment environment;
+  return geometry::circumcentre<D>(mesh_->view().corners(cell));
 }
 
 template <int D, class Index>
 std::vector<Point<D>> Delaunay<D, Index>::circumcentres() const {
-  const detail::FloatEnvironment environment;
+  const library::FloatEnvironment environment;
   const auto view = mesh_->view();
   std::vector<Point<D>> centres(cell_count());
-  detail::with_threads(mesh_->threads, [&] {
-    detail::parallel_for(centres.size(), kCellGrain,
-                         [&](std::size_t, std::size_t begin, std::size_t end) {
-                           for (std::size_t c = begin; c < end; ++c) {
-                             const auto corners = view.corners(static_cast<Index>(c));
-                             centres[c] = detail::circumcentre<D>(corners);
-                           }
-                         });
+  parallel::with_threads(mesh_->threads, [&] {
+    parallel::parallel_for(centres.size(), kCellGrain,
+                           [&](std::size_t, std::size_t begin, std::size_t end) {
+                             for (std::size_t c = begin; c < end; ++c) {
+                               const auto corners = view.corners(static_cast<Index>(c));
+                               centres[c] = geometry::circumcentre<D>(corners);
+                             }
+                           });
   });
   return centres;
 }
@@ -151,11 +151,11 @@ template <int D, class Index>
 std::uint64_t Delaunay<D, Index>::canonical_hash() const {
   const auto view = mesh_->view();
   const std::size_t cells = cell_count();
-  detail::CanonicalHash<D> hash;
+  geometry::CanonicalHash<D> hash;
   std::mutex mutex;  // guards hash, a sum whose order does not matter
-  detail::with_threads(mesh_->threads, [&] {
-    detail::parallel_for(cells, kCellGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
-      detail::CanonicalHash<D> some;
+  parallel::with_threads(mesh_->threads, [&] {
+    parallel::parallel_for(cells, kCellGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
+      geometry::CanonicalHash<D> some;
       for (std::size_t c = begin; c < end; ++c) some.add(view.corners(static_cast<Index>(c)));
       const std::lock_guard lock(mutex);
       hash.add(some);
@@ -166,19 +166,19 @@ std::uint64_t Delaunay<D, Index>::canonical_hash() const {
 
 template <int D, class Index>
 Index Delaunay<D, Index>::locate(const Point<D>& place) const {
-  if (!detail::is_finite<D>(place)) return -1;
-  const detail::FloatEnvironment environment;
-  return detail::locate<D>(mesh_->view(), place, mesh_->starts().find(place)).cell;
+  if (!library::is_finite<D>(place)) return -1;
+  const library::FloatEnvironment environment;
+  return library::locate<D>(mesh_->view(), place, mesh_->starts().find(place)).cell;
 }
 
 template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::locate(PointView<D> places) const {
-  const detail::FloatEnvironment environment;
+  const library::FloatEnvironment environment;
   const auto view = mesh_->view();
   const auto& starts = mesh_->starts();
   return answer_all<D, Index>(mesh_->threads, places, -1,
                               [&](std::span<const Point<D>> near, std::span<Index> cells) {
-                                const auto locations = detail::locate_all<D>(view, starts, near);
+                                const auto locations = library::locate_all<D>(view, starts, near);
                                 for (std::size_t j = 0; j < near.size(); ++j)
                                   cells[j] = locations[j].cell;
                               });
@@ -186,21 +186,21 @@ std::vector<Index> Delaunay<D, Index>::locate(PointView<D> places) const {
 
 template <int D, class Index>
 Index Delaunay<D, Index>::nearest_vertex(const Point<D>& place) const {
-  if (!detail::is_finite<D>(place)) return -1;
-  const detail::FloatEnvironment environment;
-  return detail::nearest_vertex<D>(mesh_->view(), place, mesh_->starts().find(place));
+  if (!library::is_finite<D>(place)) return -1;
+  const library::FloatEnvironment environment;
+  return library::nearest_vertex<D>(mesh_->view(), place, mesh_->starts().find(place));
 }
 
 template <int D, class Index>
 std::vector<Index> Delaunay<D, Index>::nearest_vertex(PointView<D> places) const {
-  const detail::FloatEnvironment environment;
+  const library::FloatEnvironment environment;
   const auto view = mesh_->view();
   const auto& starts = mesh_->starts();
   return answer_all<D, Index>(mesh_->threads, places, -1,
                               [&](std::span<const Point<D>> near, std::span<Index> vertices) {
                                 Index cell = starts.find(near[0]);
                                 for (std::size_t j = 0; j < near.size(); ++j) {
-                                  vertices[j] = detail::nearest_vertex<D>(view, near[j], cell);
+                                  vertices[j] = library::nearest_vertex<D>(view, near[j], cell);
                                   cell = view.vertex_cells[vertices[j]];
                                 }
                               });
@@ -214,16 +214,16 @@ std::vector<double> Delaunay<D, Index>::interpolate(std::span<const double> valu
                 fmt::format("{} values for {} points: there must be one for each", values.size(),
                             point_count()));
   }
-  const detail::FloatEnvironment environment;
+  const library::FloatEnvironment environment;
   const auto view = mesh_->view();
   const auto& starts = mesh_->starts();
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return answer_all<D, double>(
       mesh_->threads, places, kNone, [&](std::span<const Point<D>> near, std::span<double> found) {
-        const auto locations = detail::locate_all<D>(view, starts, near);
+        const auto locations = library::locate_all<D>(view, starts, near);
         for (std::size_t j = 0; j < near.size(); ++j) {
           const Index cell = locations[j].cell;
-          found[j] = cell < 0 ? kNone : detail::interpolated_value<D>(view, values, cell, near[j]);
+          found[j] = cell < 0 ? kNone : library::interpolated_value<D>(view, values, cell, near[j]);
         }
       });
 }

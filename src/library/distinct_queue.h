@@ -6,7 +6,9 @@
 #include <unordered_set>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::library {
 
 /// Numbers in the order in which they were first added. Most stars have a few dozen cells, so that
 /// a search through all of them is faster than any index; of more there is one.
@@ -39,4 +41,4 @@ class DistinctQueue {
   std::size_t size_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

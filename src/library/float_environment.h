@@ -3,9 +3,11 @@
 #include <cfenv>
 #if defined(__x86_64__)
 #include <xmmintrin.h>
+
+#include "src/rooms.h"
 #endif
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// While it lives, the calling thread rounds to the nearest and keeps subnormal numbers, as the
 /// proofs of the predicates ask for, whatever a program has set; then all is as before. A program
@@ -40,4 +42,4 @@ class FloatEnvironment {
 #endif
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

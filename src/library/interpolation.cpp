@@ -6,7 +6,7 @@
 
 #include "src/geometry/constructions/barycentric.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 template <int D, class Index>
 double interpolated_value(const MeshView<D, Index>& mesh, std::span<const double> values,
@@ -36,4 +36,4 @@ template double interpolated_value<2>(const MeshView<2, std::int64_t>&, std::spa
 template double interpolated_value<3>(const MeshView<3, std::int64_t>&, std::span<const double>,
                                       std::int64_t, const Point<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -4,7 +4,7 @@
 
 #include "src/library/mesh_view.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// The value at a place of the function that is linear on the cell, which has the place inside or
 /// on its boundary, and has values[v] at vertex v. Values of vertices whose barycentric coordinate
@@ -13,4 +13,4 @@ template <int D, class Index>
 double interpolated_value(const MeshView<D, Index>& mesh, std::span<const double> values,
                           Index cell, const Point<D>& place);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// What queries read of a triangulation: plain arrays, as spillway::Delaunay shows them.
 template <int D, class Index>
@@ -35,4 +35,4 @@ struct MeshView {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -10,7 +10,7 @@
 #include "src/library/distinct_queue.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 /// Walks that take turns: while one waits for memory, the others go on. With half as many a place
@@ -266,4 +266,4 @@ template std::vector<Location<std::int64_t>> locate_all<3>(const MeshView<3, std
 template std::int64_t nearest_vertex<3>(const MeshView<3, std::int64_t>&, const Point<3>&,
                                         std::int64_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

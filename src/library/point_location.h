@@ -6,7 +6,7 @@
 #include "src/library/mesh_view.h"
 #include "src/library/start_tree.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// Where a search for a place ended.
 template <class Index>
@@ -35,4 +35,4 @@ std::vector<Location<Index>> locate_all(const MeshView<D, Index>& mesh,
 template <int D, class Index>
 Index nearest_vertex(const MeshView<D, Index>& mesh, const Point<D>& place, Index start);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -9,7 +9,7 @@
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 /// Places that are sorted at a time.
@@ -91,4 +91,4 @@ template void for_each_near<3>(
     std::size_t, unsigned, const std::function<Point<3>(std::size_t)>&,
     const std::function<void(std::span<const Point<3>>, std::span<const std::size_t>)>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// Whether all coordinates are finite.
 template <int D>
@@ -21,4 +21,4 @@ void for_each_near(
     std::size_t count, unsigned threads, const std::function<Point<D>(std::size_t)>& at,
     const std::function<void(std::span<const Point<D>>, std::span<const std::size_t>)>& body);
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

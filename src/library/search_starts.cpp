@@ -8,7 +8,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 /// One point of each kSampled in the order of the input. Which one looks like chance: in an input
@@ -45,4 +45,4 @@ template class SearchStarts<3, std::int32_t>;
 template class SearchStarts<2, std::int64_t>;
 template class SearchStarts<3, std::int64_t>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -5,7 +5,7 @@
 #include "src/library/mesh_view.h"
 #include "src/library/start_tree.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// The tree of a mesh in which searches begin, made when it is first asked for: who asks nothing
 /// does not wait for it.
@@ -22,4 +22,4 @@ class SearchStarts {
   mutable StartTree<D, Index> tree_;  // written once, as made_ says
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

@@ -6,7 +6,7 @@
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 namespace {
 
 /// Smaller parts are built by one thread.
@@ -54,4 +54,4 @@ template class StartTree<3, std::int32_t>;
 template class StartTree<2, std::int64_t>;
 template class StartTree<3, std::int64_t>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

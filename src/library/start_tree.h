@@ -7,7 +7,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::library {
 
 /// A point of a triangulation and a cell that it is a vertex of.
 template <int D, class Index>
@@ -50,4 +50,4 @@ class StartTree {
   std::vector<Index> cells_;  ///< of the leaves, a power of two
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::library

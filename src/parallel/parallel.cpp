@@ -17,7 +17,7 @@
 
 #include "src/parallel/thread_demand.h"
 
-namespace spillway::detail {
+namespace spillway::parallel {
 namespace {
 
 // The thread sanitizer does not see how the library, which is not built with it, passes a task from
@@ -264,4 +264,4 @@ void run_pipeline(std::size_t slots, const std::function<bool(std::size_t slot)>
       context);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::parallel

@@ -13,7 +13,7 @@
 
 #include "src/runtime/run_memory.h"
 
-namespace spillway::detail {
+namespace spillway::parallel {
 
 /// Number of processors this process may use.
 unsigned available_threads();
@@ -110,4 +110,4 @@ void parallel_work_queue(std::vector<Item> items, std::size_t batch, const Body&
   group.wait();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::parallel

@@ -12,7 +12,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::parallel {
 namespace {
 
 constexpr auto kParallelism = tbb::global_control::max_allowed_parallelism;
@@ -75,4 +75,4 @@ unsigned ThreadDemand::limit() {
   return static_cast<unsigned>(tbb::global_control::active_value(kParallelism));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::parallel

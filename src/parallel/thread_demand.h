@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::parallel {
 
 /// While it lives, oneTBB may run that many threads at a time, or as many as another demand beside
 /// it or the machine allows, if those are more. oneTBB knows one limit for the process, of which
@@ -24,4 +26,4 @@ class ThreadDemand {
   unsigned threads_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::parallel

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <span>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::picture {
 
 /// Red, green and blue from 0 to 1, in sRGB.
 using Colour = std::array<float, 3>;
@@ -29,4 +31,4 @@ inline Colour colour_at(std::span<const Colour> table, double t) {
              static_cast<float>(place - static_cast<double>(before)));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// The pixels of a picture that shows a box, `longest_side` of them on its longer side and a margin
 /// around it included. The box must have an extent.
@@ -26,4 +26,4 @@ inline PixelGrid frame_around(const Box<2>& box, std::uint32_t longest_side, std
   return frame;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

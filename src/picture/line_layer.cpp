@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::picture {
 namespace {
 
 /// Half of a line's width, and how far from its middle it is still seen.
@@ -81,4 +81,4 @@ void LineLayer::cover(Picture& picture, const Colour& colour, float opacity) con
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

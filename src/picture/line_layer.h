@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/picture/picture.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// Thin smooth lines over a picture. A pixel keeps the strongest of its lines, so neither their
 /// order nor drawing a line twice matters.
@@ -37,4 +37,4 @@ class LineLayer {
   std::vector<std::atomic<std::uint8_t>> strength_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

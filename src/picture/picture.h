@@ -7,7 +7,7 @@
 
 #include "src/picture/colour.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// Pixels in rows from the top: red, green, blue and opacity, a byte each. Opacity does not scale
 /// the colours.
@@ -70,4 +70,4 @@ class Picture {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

@@ -9,7 +9,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 namespace {
 
 /// Samples of a pixel, each way.
@@ -208,4 +208,4 @@ Picture draw_polygons(std::span<const SeenPolygon> polygons, std::uint32_t colum
   return picture;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

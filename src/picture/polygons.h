@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/picture/picture.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// A convex polygon of three or four corners in space, as it is seen.
 struct SeenPolygon {
@@ -27,4 +27,4 @@ double side_of(const SeenPolygon& polygon);
 Picture draw_polygons(std::span<const SeenPolygon> polygons, std::uint32_t columns,
                       std::uint32_t rows);
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

@@ -6,7 +6,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 namespace {
 
 /// From low to high, each lighter than the one before.
@@ -154,4 +154,4 @@ Relief draw_relief(const HeightPixels& heights, const ReliefStyle& style) {
   return relief;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

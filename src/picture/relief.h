@@ -8,7 +8,7 @@
 #include "src/picture/picture.h"
 #include "src/terrain/pixel_values.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// Heights of a picture's pixels: each the mean of kSamples x kSamples samples, as far as these
 /// have a height. A single sample would make noise of whatever is finer than a pixel.
@@ -68,4 +68,4 @@ struct Relief {
 /// without a height are transparent.
 Relief draw_relief(const HeightPixels& heights, const ReliefStyle& style);
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::picture {
 namespace {
 
 Point<2> crossing(const Point<3>* a, const Point<3>* b, const Slice& plane) {
@@ -46,4 +46,4 @@ PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const Slice& plane) {
   return result;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::picture {
 
 /// Where a plane cuts a tetrahedron: a convex polygon, corners in turn, by the two other
 /// coordinates in their order.
@@ -19,4 +19,4 @@ struct PlaneCut {
 /// tetrahedra. A cut's corner depends on nothing but the edge it lies on.
 PlaneCut cut(const std::array<Point<3>, 4>& tetrahedron, const Slice& plane);
 
-}  // namespace spillway::detail
+}  // namespace spillway::picture

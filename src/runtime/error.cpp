@@ -50,7 +50,7 @@ Error::~Error() = default;
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 std::string text_of(const FilePlace& place) {
   if (place.unit == PlaceUnit::kNone) return "";
@@ -62,12 +62,12 @@ std::string FileSpot::text() const {
 }
 
 BadInput::BadInput(const std::string& file, const std::string& what, FilePlace place, Remedy remedy)
-    : Error(file + ": " + what, ErrorCode::kBadInput,
-            {.file = file, .place = place, .remedy = remedy}) {}
+    : Failure(file + ": " + what, ErrorCode::kBadInput,
+              {.file = file, .place = place, .remedy = remedy}) {}
 
 BadInput::BadInput(const FileSpot& spot, const std::string& what)
-    : Error(spot.text() + ": " + what, ErrorCode::kBadInput,
-            {.file = spot.file, .place = spot.place}) {}
+    : Failure(spot.text() + ": " + what, ErrorCode::kBadInput,
+              {.file = spot.file, .place = spot.place}) {}
 
 BadInput BadInput::at(const std::string& file, FilePlace place, const std::string& what) {
   return {file, text_of(place) + ": " + what, place};
@@ -75,7 +75,7 @@ BadInput BadInput::at(const std::string& file, FilePlace place, const std::strin
 
 CannotWrite::CannotWrite(const std::string& file, const std::string& what, ErrorCode code,
                          FilePlace place, Remedy remedy)
-    : Error("cannot write " + file + ": " + what, code,
-            {.file = file, .place = place, .remedy = remedy}) {}
+    : Failure("cannot write " + file + ": " + what, code,
+              {.file = file, .place = place, .remedy = remedy}) {}
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

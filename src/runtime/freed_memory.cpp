@@ -10,7 +10,7 @@
 #include "src/runtime/process_memory.h"
 #include "src/runtime/run_memory.h"
 
-namespace spillway::detail {
+namespace spillway::runtime {
 namespace {
 
 /// Before memory is given back once more, the process has grown by this share of the limit.
@@ -60,4 +60,4 @@ void FreedMemory::give_back(std::uint64_t wanted) {
   next_most_ = resident_memory() + step_;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

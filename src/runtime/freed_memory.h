@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <mutex>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// What the allocator keeps of freed memory, for the next who asks. Pages that one stage of a run
 /// has used in pieces do not fit what the next one wants, so they would add up. The allocator is of
@@ -31,4 +33,4 @@ class FreedMemory {
   std::mutex mutex_;                          ///< held while memory is given back
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::runtime {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -82,8 +82,9 @@ void MemoryBudget::take(std::uint64_t bytes, const char* purpose, const WorkFore
   const std::uint64_t estimate = estimate_ ? estimate_({used - bytes, bytes, forecast}) : 0;
   const std::uint64_t perhaps = std::max(estimate, used + used / 4);
   if (!known || (estimate > 0 && perhaps < enough_)) facts.perhaps = whole_mebibytes(perhaps);
-  throw Error(fmt::format("{} of memory are too little for {}", memory_size_text(whole_), purpose),
-              ErrorCode::kOutOfBudget, std::move(facts));
+  throw Failure(
+      fmt::format("{} of memory are too little for {}", memory_size_text(whole_), purpose),
+      ErrorCode::kOutOfBudget, std::move(facts));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -14,7 +14,7 @@
 #include "src/runtime/freed_memory.h"
 #include "src/runtime/work_forecast.h"
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 /// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
 /// its container's where that has less; of that an equal share if `processes` processes share it.
@@ -66,7 +66,7 @@ class MemoryBudget {
     estimate_ = std::move(estimate);
   }
 
-  /// For holders whose size changes; where it will do a MemoryLease is better. take() throws Error
+  /// For holders whose size changes; where it will do a MemoryLease is better. take() throws Failure
   /// as that does.
   void take(std::uint64_t bytes, const char* purpose, const WorkForecast* forecast = nullptr);
   /// The same, but returns whether there is that much.
@@ -98,7 +98,7 @@ class ShrinkingLease {
   ShrinkingLease(const ShrinkingLease&) = delete;
   ShrinkingLease& operator=(const ShrinkingLease&) = delete;
 
-  /// Throws Error as MemoryLease does.
+  /// Throws Failure as MemoryLease does.
   void take(std::uint64_t bytes, const char* purpose) {
     budget_.take(bytes, purpose);
     bytes_ += bytes;
@@ -120,7 +120,7 @@ class ShrinkingLease {
 class MemoryLease {
  public:
   MemoryLease() = default;
-  /// Throws Error (kOutOfBudget) if the budget has not that much left, with the purpose, a limit
+  /// Throws Failure (kOutOfBudget) if the budget has not that much left, with the purpose, a limit
   /// that may be enough and, where it is known, one that is.
   MemoryLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose)
       : budget_(&budget), bytes_(bytes) {
@@ -144,4 +144,4 @@ class MemoryLease {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

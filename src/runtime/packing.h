@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 class Packer {
  public:
@@ -77,4 +79,4 @@ class Unpacker {
   std::span<const std::byte> left_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <new>
 
-namespace spillway::detail {
+namespace spillway::runtime {
 namespace {
 
 /// Pages that are asked of the system at a time; they take memory when they are first used.
@@ -76,4 +76,4 @@ std::size_t PagePool::kept() const {
   return kept_.size();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -5,7 +5,9 @@
 #include <mutex>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// Memory of a run in pieces of one size, each a page of its own, for what comes and goes in pieces
 /// of any number. It lies apart from all other memory, so it is not parted by what stays for long:
@@ -46,4 +48,4 @@ class PagePool {
   std::vector<void*> mapped_;      ///< stretches of pages; both lists have room for all these
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

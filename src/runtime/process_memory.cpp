@@ -7,7 +7,7 @@
 #include <array>
 #include <charconv>
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 std::uint64_t peak_memory() {
   rusage usage{};
@@ -30,4 +30,4 @@ std::uint64_t resident_memory() {
   return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::runtime {
 namespace {
 
 thread_local RunMemory* of_run = nullptr;
@@ -21,4 +21,4 @@ WorksWithMemory::~WorksWithMemory() { of_run = before_; }
 
 void work_with(RunMemory* memory) { of_run = memory; }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -5,7 +5,9 @@
 #include <mutex>
 #include <typeindex>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// What the stages of a run keep for those that follow, such as memory to be used again: one object
 /// of each type, made when it is first asked for. Runs beside each other have each their own. For
@@ -55,4 +57,4 @@ class RunScope {
 /// For threads that come and go: at which run the calling one works from now on, or at none.
 void work_with(RunMemory* memory);
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 namespace {
 
@@ -23,4 +23,4 @@ void StageTimes::tell(StageStep step) {
   step_done_(step);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

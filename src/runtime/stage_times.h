@@ -9,7 +9,9 @@
 #include <string_view>
 #include <utility>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// Where the threads of a run spend their time.
 enum class Stage {
@@ -106,4 +108,4 @@ class StageTimer {
   Clock::time_point start_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -1,6 +1,6 @@
 #include "src/runtime/task.h"
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 double Task::total_seconds() const {
   double sum = seconds;
@@ -10,4 +10,4 @@ double Task::total_seconds() const {
   return sum;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// What a task does.
 enum class TaskKind : std::uint8_t {
@@ -32,4 +34,4 @@ struct Task {
   [[nodiscard]] double total_seconds() const;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::runtime {
 
 /// What the triangulation of some points has made.
 struct SampleSize {
@@ -42,4 +44,4 @@ struct WorkForecast {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 /// All guarded by the mutex of the budget's work.
 struct WorkLease::Held {
@@ -101,4 +101,4 @@ bool WorkLease::grown() const {
   return held_->grown;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

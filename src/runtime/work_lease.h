@@ -5,7 +5,7 @@
 
 #include "src/runtime/memory_budget.h"
 
-namespace spillway::detail {
+namespace spillway::runtime {
 
 /// Memory that a piece of work with an end takes, such as a base case or a merge. Where a budget is
 /// short of it, the work waits for other work that is under way, which gives its memory back at its
@@ -16,7 +16,7 @@ namespace spillway::detail {
 class WorkLease {
  public:
   WorkLease();
-  /// Throws Error (kOutOfBudget) with the purpose, as MemoryLease does.
+  /// Throws Failure (kOutOfBudget) with the purpose, as MemoryLease does.
   WorkLease(MemoryBudget& budget, std::uint64_t bytes, const char* purpose);
   WorkLease(WorkLease&& other) noexcept;
   WorkLease& operator=(WorkLease&& other) noexcept;
@@ -27,7 +27,7 @@ class WorkLease {
   void extend(std::uint64_t bytes, const char* purpose);
 
   /// Takes more than was thought. Of all work only one at a time does so, until its end: two that
-  /// grow beside each other might each hold what the other one needs. Throws Error (kOutOfBudget),
+  /// grow beside each other might each hold what the other one needs. Throws Failure (kOutOfBudget),
   /// which names a limit by what is forecast. For any thread of the work; not while it is moved.
   void grow(std::uint64_t bytes, const WorkForecast& forecast);
 
@@ -39,4 +39,4 @@ class WorkLease {
   std::unique_ptr<Held> held_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::runtime

@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 namespace {
 
 /// GDAL counts rows and columns in int.
@@ -66,4 +66,4 @@ std::optional<std::uint32_t> row_of(const PixelGrid& grid, double y) {
   return pixel_of(grid.north - y, grid.resolution, grid.rows);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

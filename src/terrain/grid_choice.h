@@ -5,7 +5,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// How the pixels of a raster are to lie.
 struct GridRequest {
@@ -25,4 +25,4 @@ PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent);
 std::optional<std::uint32_t> column_of(const PixelGrid& grid, double x);
 std::optional<std::uint32_t> row_of(const PixelGrid& grid, double y);
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 Point<2> lengths_at(const GroundScale& scale, double y) {
   if (scale.degrees == 0) return {1, 1};
@@ -19,4 +19,4 @@ Point<2> lengths_at(const GroundScale& scale, double y) {
   return {across * cosine * radians, along * radians};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -2,7 +2,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// How gradients become those of the ground, where x, y and z are not measured alike.
 struct GroundScale {
@@ -19,4 +19,4 @@ struct GroundScale {
 /// "Map Projections - A Working Manual", 1987, p. 24 and 25); 1 if these are lengths.
 Point<2> lengths_at(const GroundScale& scale, double y);
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 namespace {
 
 constexpr std::int64_t kMostInTriangle = 1'000'000;
@@ -68,16 +68,17 @@ std::int64_t Levels::first_above(double low) const {
   }
   const double estimate = std::floor((low - base_) / interval_);
   if (!(std::abs(estimate) < kLargestNumber)) {
-    throw Error(fmt::format("the height {} is too far from level {} for an interval of {}: choose "
-                            "a larger one",
-                            low, base_, interval_),
-                ErrorCode::kInvalidArgument);
+    throw Failure(
+        fmt::format("the height {} is too far from level {} for an interval of {}: choose "
+                    "a larger one",
+                    low, base_, interval_),
+        ErrorCode::kInvalidArgument);
   }
   // The quotient is rounded, so the number is found by the levels themselves.
   auto number = static_cast<std::int64_t>(estimate) - 1;
   for (; height(number) <= low; ++number) {
     if (height(number + 1) == height(number)) {
-      throw Error(
+      throw Failure(
           fmt::format("{} is too small an interval: at height {} its levels cannot be told apart; "
                       "choose a larger one",
                       interval_, low),
@@ -98,10 +99,11 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
       std::minmax({corners[0].point[2], corners[1].point[2], corners[2].point[2]});
   const Levels::Range range = levels.between(low, high);
   if (range.end - range.first > kMostInTriangle) {
-    throw Error(fmt::format("a single triangle, from height {} to {}, crosses {} levels: choose a "
-                            "larger interval",
-                            low, high, range.end - range.first),
-                ErrorCode::kInvalidArgument);
+    throw Failure(
+        fmt::format("a single triangle, from height {} to {}, crosses {} levels: choose a "
+                    "larger interval",
+                    low, high, range.end - range.first),
+        ErrorCode::kInvalidArgument);
   }
   for (std::int64_t level = range.first; level < range.end; ++level) {
     const double height = levels.height(level);
@@ -120,4 +122,4 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

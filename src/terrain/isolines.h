@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// The heights at which lines are drawn: all multiples of an interval above and below a base, or
 /// the heights of a list. A level's number says which one it is.
@@ -61,8 +61,8 @@ struct IsoSegment {
 };
 
 /// Appends the segments of all levels in a triangle whose corners run counter-clockwise. Throws
-/// Error if there are more than a million of them: the interval must be a mistake.
+/// Failure if there are more than a million of them: the interval must be a mistake.
 void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
                      std::vector<IsoSegment>& segments);
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

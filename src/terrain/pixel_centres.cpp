@@ -4,13 +4,13 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 namespace {
 
 /// How far, in steps of the lattice, rounding takes a coordinate of some millions of steps.
 constexpr double kRoundingSteps = 1e-6;
 
-double on_lattice(const Lattice& lattice, int axis, double world) {
+double on_lattice(const IntegerLattice& lattice, int axis, double world) {
   const double steps = (world - lattice.offset[axis]) / lattice.scale[axis];
   const double whole = std::nearbyint(steps);
   return std::abs(steps - whole) <= kRoundingSteps ? whole : steps;
@@ -18,7 +18,7 @@ double on_lattice(const Lattice& lattice, int axis, double world) {
 
 }  // namespace
 
-PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& lattice)
+PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice)
     : x_(grid.columns),
       y_(grid.rows),
       per_x_((lattice ? lattice->scale[0] : 1) / grid.resolution),
@@ -41,4 +41,4 @@ PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& 
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -8,7 +8,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/pixel_grid.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// The centres of a raster's pixels in the coordinates of the triangles. Where these are integers
 /// of a lattice, the centres are mapped there and not the triangles to the world: a triangulation
@@ -18,7 +18,7 @@ class PixelCentres {
  public:
   /// Throws InvalidArgument if the resolution is too fine for doubles to tell neighbours apart. The
   /// lattice's scales must be positive.
-  PixelCentres(const PixelGrid& grid, const std::optional<Lattice>& lattice);
+  PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice);
 
   [[nodiscard]] std::span<const double> x() const { return x_; }  ///< by column, ascending
   [[nodiscard]] std::span<const double> y() const { return y_; }  ///< by row, descending
@@ -57,4 +57,4 @@ class PixelCentres {
   double per_y_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace spillway::detail {
+namespace spillway::terrain {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -97,4 +97,4 @@ double hillshade_of(const Gradient& gradient, const Point<3>& light_direction) {
   return 255 * std::clamp(cosine, 0.0, 1.0) + 0.0;  // a sum of zeros is 0, not -0
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

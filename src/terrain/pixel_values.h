@@ -3,7 +3,7 @@
 #include "src/geometry/lattice.h"
 #include "src/terrain/triangle_pixels.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// Units of height for a unit of x and of y.
 using Gradient = Point<2>;
@@ -60,4 +60,4 @@ Point<3> direction_of(const Light& light);
 /// light and the surface's normal (Horn, "Hill shading and the reflectance map", 1981).
 double hillshade_of(const Gradient& gradient, const Point<3>& light_direction);
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

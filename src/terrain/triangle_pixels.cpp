@@ -8,7 +8,7 @@
 #include "src/geometry/predicate_stages.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 namespace {
 
 /// Products between these are rounded by remainders that are doubles themselves.
@@ -175,4 +175,4 @@ void find_pixels(const PixelCentres& centres, const Triangle& canonical, const P
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

@@ -10,7 +10,7 @@
 #include "src/geometry/point.h"
 #include "src/terrain/pixel_centres.h"
 
-namespace spillway::detail {
+namespace spillway::terrain {
 
 /// A triangle with heights; x and y in the coordinates of the pixel centres.
 using Triangle = std::array<Point<3>, 3>;
@@ -76,4 +76,4 @@ inline PixelWindow window_of(const CentreWindow& a, const CentreWindow& b, const
 void find_pixels(const PixelCentres& centres, const Triangle& canonical, const PixelWindow& window,
                  std::vector<PixelRun>& runs);
 
-}  // namespace spillway::detail
+}  // namespace spillway::terrain

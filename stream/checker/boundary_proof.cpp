@@ -6,7 +6,7 @@
 #include "src/geometry/predicates.h"
 #include "stream/checker/mesh_proof.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 namespace {
 
 template <int D>
@@ -145,4 +145,4 @@ void prove_boundary(const MeshView<D>& mesh, const std::vector<BoundaryFacet<D>>
 template void prove_boundary<2>(const MeshView<2>&, const std::vector<BoundaryFacet<2>>&, Faults&);
 template void prove_boundary<3>(const MeshView<3>&, const std::vector<BoundaryFacet<3>>&, Faults&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

@@ -8,12 +8,12 @@
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/stream_proof.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 namespace {
 
 void require_dimension(int dimension) {
   if (dimension != 2 && dimension != 3) {
-    throw Error(
+    throw Failure(
         fmt::format("a mesh of dimension {} cannot be checked: only 2 and 3 can", dimension),
         ErrorCode::kInvalidArgument);
   }
@@ -34,9 +34,9 @@ std::uint64_t hash_of(const Mesh& mesh) {
     for (int i = 0; i <= D; ++i) {
       const std::uint64_t vertex = mesh.corners[s + i];
       if (vertex >= mesh.vertices.size()) {
-        throw Error(fmt::format("{} {} names vertex {}, but the mesh has {} vertices",
-                                Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()),
-                    ErrorCode::kBadInput, {.place = at_record(s / (D + 1))});
+        throw Failure(fmt::format("{} {} names vertex {}, but the mesh has {} vertices",
+                                  Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()),
+                      ErrorCode::kBadInput, {.place = at_record(s / (D + 1))});
       }
       simplex[i] = output_point<D>(mesh.vertices[vertex]);
     }
@@ -45,7 +45,7 @@ std::uint64_t hash_of(const Mesh& mesh) {
   return hash.value();
 }
 
-CheckReport read_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task) {
+CheckReport read_stream(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task) {
   require_dimension(reader.header().dimension);
   CheckReport report;
   if (reader.header().dimension == 2) {
@@ -58,7 +58,7 @@ CheckReport read_stream(MeshStreamReader& reader, const CheckOptions& options, S
 
 }  // namespace
 
-CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options) {
+CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options) {
   require_dimension(mesh.header.dimension);
   CheckReport report;
   report.vertices = mesh.vertices.size();
@@ -71,11 +71,11 @@ CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options) {
   return report;
 }
 
-CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckOptions& options) {
+CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options) {
   return read_stream(reader, options, StreamTask::kProve);
 }
 
-CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckOptions& options) {
+CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options) {
   return read_stream(reader, options, StreamTask::kCount);
 }
 
@@ -84,4 +84,4 @@ std::uint64_t canonical_hash(const Mesh& mesh) {
   return mesh.header.dimension == 2 ? hash_of<2>(mesh) : hash_of<3>(mesh);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

@@ -12,12 +12,12 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// Ties are broken as src/geometry/predicates.h says, unless any triangulation will do.
-struct CheckOptions : spillway::CheckOptions {
+struct CheckerOptions : CheckOptions {
   /// The integers to test on, if the mesh itself records no lattice but its input has one.
-  std::optional<Lattice> input_lattice{};
+  std::optional<IntegerLattice> input_lattice{};
 
   // For streams only.
   unsigned threads = 1;  ///< 0: as many as the machine has
@@ -32,19 +32,19 @@ struct CheckOptions : spillway::CheckOptions {
 /// boundary one convex surface traversed once, every inner facet locally Delaunay by exact
 /// predicates. Together these make the mesh the Delaunay triangulation of its vertices (Delaunay's
 /// lemma: locally Delaunay everywhere implies globally); docs/algorithm-checker.md has the
-/// argument. Throws Error if the mesh's dimension is neither 2 nor 3.
-CheckReport check_mesh(const Mesh& mesh, const CheckOptions& options);
+/// argument. Throws Failure if the mesh's dimension is neither 2 nor 3.
+CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options);
 
 /// The same proof for a mesh that flows, in memory that is proportional to its open border (the
 /// vertices that are not finalized and the facets with one simplex so far). Compares the totals
 /// that the stream ends with, if it has any. Throws what the reader throws.
-CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckOptions& options);
+CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options);
 
 /// The numbers, the hash and the peaks of that report without the proof: faults are only totals
 /// other than those that the stream ends with.
-CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckOptions& options);
+CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options);
 
-/// The canonical hash of any mesh, proved or not. Throws Error if a vertex number is out of range.
+/// The canonical hash of any mesh, proved or not. Throws Failure if a vertex number is out of range.
 std::uint64_t canonical_hash(const Mesh& mesh);
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

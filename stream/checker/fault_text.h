@@ -12,7 +12,7 @@
 #include "src/geometry/point.h"
 #include "stream/checker/checker.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// The words for a simplex and its facets.
 template <int D>
@@ -106,4 +106,4 @@ class Faults {
   std::size_t most_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

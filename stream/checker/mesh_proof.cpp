@@ -6,7 +6,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 template <int D>
 NamedVertex<D> MeshView<D>::named(std::uint64_t vertex) const {
@@ -19,13 +19,13 @@ template <int D>
 std::string MeshView<D>::simplex_text(std::uint64_t simplex) const {
   std::array<NamedVertex<D>, D + 1> vertices;
   for (int i = 0; i <= D; ++i) vertices[i] = named(corner(simplex, i));
-  return spillway::detail::simplex_text<D>(
+  return spillway::checker::simplex_text<D>(
       numbers_ == nullptr ? simplex : numbers_->simplices[simplex], vertices);
 }
 
 template <int D>
 ApexSide apex_side(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
-                   const CheckOptions& options) {
+                   const CheckerOptions& options) {
   const int side =
       options.any_delaunay ? side_of_sphere<D>(simplex, apex) : in_sphere<D>(simplex, apex);
   if (side <= 0) return ApexSide::kOutside;
@@ -38,7 +38,7 @@ namespace {
 template <int D>
 class MeshProof {
  public:
-  MeshProof(const Mesh& mesh, const CheckOptions& options, CheckReport& report)
+  MeshProof(const Mesh& mesh, const CheckerOptions& options, CheckReport& report)
       : mesh_(mesh),
         options_(options),
         report_(report),
@@ -93,7 +93,7 @@ class MeshProof {
   // The integers of the lattice where there is one with equal scales, else the coordinates as they
   // are.
   void set_coordinates() {
-    const std::optional<Lattice>& lattice =
+    const std::optional<IntegerLattice>& lattice =
         mesh_.header.lattice ? mesh_.header.lattice : options_.input_lattice;
     std::vector<Point<D>>& points = view_.points();
     const std::uint64_t before = faults_.count();
@@ -248,7 +248,7 @@ class MeshProof {
   }
 
   const Mesh& mesh_;
-  const CheckOptions& options_;
+  const CheckerOptions& options_;
   CheckReport& report_;
   Faults faults_;
   MeshView<D> view_;
@@ -260,17 +260,17 @@ class MeshProof {
 }  // namespace
 
 template <int D>
-void prove_mesh(const Mesh& mesh, const CheckOptions& options, CheckReport& report) {
+void prove_mesh(const Mesh& mesh, const CheckerOptions& options, CheckReport& report) {
   MeshProof<D>(mesh, options, report).run();
 }
 
 template class MeshView<2>;
 template class MeshView<3>;
 template ApexSide apex_side<2>(const std::array<Point<2>, 3>&, const Point<2>&,
-                               const CheckOptions&);
+                               const CheckerOptions&);
 template ApexSide apex_side<3>(const std::array<Point<3>, 4>&, const Point<3>&,
-                               const CheckOptions&);
-template void prove_mesh<2>(const Mesh&, const CheckOptions&, CheckReport&);
-template void prove_mesh<3>(const Mesh&, const CheckOptions&, CheckReport&);
+                               const CheckerOptions&);
+template void prove_mesh<2>(const Mesh&, const CheckerOptions&, CheckReport&);
+template void prove_mesh<3>(const Mesh&, const CheckerOptions&, CheckReport&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

@@ -15,7 +15,7 @@
 #include "stream/checker/checker.h"
 #include "stream/checker/fault_text.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// A face as the sorted numbers of its K vertices, and whose face it is.
 template <std::size_t K>
@@ -86,7 +86,7 @@ class MeshView {
 
   /// "vertex 7 (1.5, 2)", in output coordinates.
   [[nodiscard]] std::string vertex_text(std::uint64_t vertex) const {
-    return spillway::detail::vertex_text<D>(named(vertex));
+    return spillway::checker::vertex_text<D>(named(vertex));
   }
   /// "triangle 3 (vertices 5, 6, 7 at (0, 0), (1, 0), (0, 1))".
   [[nodiscard]] std::string simplex_text(std::uint64_t simplex) const;
@@ -111,11 +111,11 @@ class MeshView {
 /// `options` says.
 template <int D>
 ApexSide apex_side(const std::array<Point<D>, D + 1>& simplex, const Point<D>& apex,
-                   const CheckOptions& options);
+                   const CheckerOptions& options);
 
 /// Runs the whole proof and writes its outcome into the report.
 template <int D>
-void prove_mesh(const Mesh& mesh, const CheckOptions& options, CheckReport& report);
+void prove_mesh(const Mesh& mesh, const CheckerOptions& options, CheckReport& report);
 
 /// The part about the boundary: adds a fault unless the facets form one convex surface around the
 /// simplices. Each facet's simplex must be positively oriented.
@@ -132,4 +132,4 @@ void for_each_run(std::vector<Face<K>>& faces, F&& f) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

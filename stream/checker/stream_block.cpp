@@ -5,14 +5,14 @@
 #include "src/geometry/predicates.h"
 #include "stream/checker/mesh_proof.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 template <int D>
-void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
+void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const CheckerOptions& options,
                              StreamTask task) {
   if (block.corners.size() >= kMatched || block.corners.size() % (D + 1) != 0) {
     const bool too_many = block.corners.size() >= kMatched;
-    throw Error(
+    throw Failure(
         fmt::format(
             "a block of the mesh stream lists {} corners, which {}", block.corners.size(),
             too_many ? "are more than can be checked" : "make no whole number of simplices"),
@@ -25,7 +25,7 @@ void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const Chec
 
 template <int D>
 void StreamBlock<D>::examine_simplices(const StreamCoordinates<D>& coordinates,
-                                       const CheckOptions& options, StreamTask task) {
+                                       const CheckerOptions& options, StreamTask task) {
   hashes_.resize(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
     hashes_[v] = vertex_hash<D>(coordinates.to_output(points[v]));
@@ -53,7 +53,7 @@ void StreamBlock<D>::examine_simplices(const StreamCoordinates<D>& coordinates,
 // very few, as a simplex's neighbours mostly come soon after it.
 template <int D>
 void StreamBlock<D>::match_facets(const StreamCoordinates<D>& coordinates,
-                                  const CheckOptions& options, StreamTask task) {
+                                  const CheckerOptions& options, StreamTask task) {
   inner_facets = 0;
   not_delaunay = 0;
   heads_.assign(points.size(), kNone);
@@ -99,7 +99,7 @@ void StreamBlock<D>::match_facets(const StreamCoordinates<D>& coordinates,
 template <int D>
 void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool two_sides,
                                  const StreamCoordinates<D>& coordinates, Faults& faults,
-                                 const CheckOptions& options) {
+                                 const CheckerOptions& options) {
   const std::size_t a = newer / (D + 1);
   const std::size_t b = older / (D + 1);
   if (!positive[a] || !positive[b]) return;
@@ -120,4 +120,4 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
 template class StreamBlock<2>;
 template class StreamBlock<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

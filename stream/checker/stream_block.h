@@ -12,7 +12,7 @@
 #include "stream/checker/fault_text.h"
 #include "stream/checker/stream_coordinates.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// The facet opposite a simplex's i-th corner, its vertices sorted, and whether it takes an odd
 /// number of swaps to sort it once it is listed so that its outside is positive. Two positive
@@ -54,7 +54,7 @@ template <int D>
 class StreamBlock {
  public:
   // Set before examine().
-  MeshBlock block;
+  MeshStreamBlock block;
   std::uint64_t first_vertex = 0;    ///< stream number of the first new vertex
   std::uint64_t first_simplex = 0;   ///< number of the first simplex
   std::vector<std::uint32_t> slots;  ///< of vertices, by short number
@@ -74,7 +74,7 @@ class StreamBlock {
 
   /// Hashes the simplices and matches their facets. To prove them is to test their orientation and
   /// that the facets between them are locally Delaunay; otherwise none of that is looked at.
-  void examine(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
+  void examine(const StreamCoordinates<D>& coordinates, const CheckerOptions& options,
                StreamTask task);
 
   [[nodiscard]] std::uint64_t simplices() const { return block.corners.size() / (D + 1); }
@@ -104,17 +104,17 @@ class StreamBlock {
     std::uint32_t next;                     // kMatched once it is in no list
   };
 
-  void examine_simplices(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
+  void examine_simplices(const StreamCoordinates<D>& coordinates, const CheckerOptions& options,
                          StreamTask task);
-  void match_facets(const StreamCoordinates<D>& coordinates, const CheckOptions& options,
+  void match_facets(const StreamCoordinates<D>& coordinates, const CheckerOptions& options,
                     StreamTask task);
   void prove_facet(std::uint32_t older, std::uint32_t newer, bool two_sides,
                    const StreamCoordinates<D>& coordinates, Faults& faults,
-                   const CheckOptions& options);
+                   const CheckerOptions& options);
 
   std::vector<std::uint32_t> heads_;   // by smallest vertex: its first open facet
   std::vector<Link> links_;            // by facet
   std::vector<std::uint64_t> hashes_;  // of vertices, by short number
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

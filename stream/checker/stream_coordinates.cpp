@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 template <int D>
 StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
-                                        const std::optional<Lattice>& input_lattice)
+                                        const std::optional<IntegerLattice>& input_lattice)
     : lattice_(header.lattice ? header.lattice : input_lattice),
       blocks_hold_integers_(header.lattice.has_value()),
       on_lattice_(lattice_ && lattice_->isotropic(D)) {}
@@ -50,4 +50,4 @@ Point<D> StreamCoordinates<D>::to_output(const Point<D>& point) const {
 template class StreamCoordinates<2>;
 template class StreamCoordinates<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

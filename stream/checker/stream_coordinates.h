@@ -6,7 +6,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// Between the three kinds of coordinates of a mesh stream: those that its blocks hold, those that
 /// predicates run on (the lattice's integers, where the axes have one scale, else output
@@ -15,10 +15,11 @@ template <int D>
 class StreamCoordinates {
  public:
   /// `input_lattice` serves if the stream has no lattice itself.
-  StreamCoordinates(const MeshStreamHeader& header, const std::optional<Lattice>& input_lattice);
+  StreamCoordinates(const MeshStreamHeader& header,
+                    const std::optional<IntegerLattice>& input_lattice);
 
   /// The lattice that vertices must lie on, if any.
-  [[nodiscard]] const std::optional<Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const { return lattice_; }
 
   /// Whether predicates run on integers.
   [[nodiscard]] bool on_lattice() const { return on_lattice_; }
@@ -38,9 +39,9 @@ class StreamCoordinates {
   }
 
  private:
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   bool blocks_hold_integers_;
   bool on_lattice_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

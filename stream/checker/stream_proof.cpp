@@ -7,14 +7,14 @@
 #include "src/geometry/canonical_hash.h"
 #include "src/parallel/parallel.h"
 #include "stream/checker/mesh_proof.h"
-#include "stream/checker/open_vertices.h"
+#include "stream/checker/needed_vertices.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 namespace {
 
 // A facet that one simplex has so far. 24 bytes.
 template <int D>
-struct OpenFacet {
+struct UnpairedFacet {
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0} >> 2;
 
   std::array<std::uint32_t, D> facet{};  // slots, sorted
@@ -24,7 +24,7 @@ struct OpenFacet {
   std::uint64_t positive : 1 = 0;  // whether the simplex is
 
   [[nodiscard]] bool empty() const { return simplex == kEmpty; }
-  [[nodiscard]] bool same_key(const OpenFacet& other) const { return facet == other.facet; }
+  [[nodiscard]] bool same_key(const UnpairedFacet& other) const { return facet == other.facet; }
   [[nodiscard]] std::uint64_t scattered() const {
     std::uint64_t key = std::uint64_t{facet[0]} << 32 | facet[1];
     if constexpr (D == 3) key = scatter(key) + facet[2];
@@ -42,7 +42,7 @@ struct Batch {
 template <int D>
 class StreamProof {
  public:
-  StreamProof(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
+  StreamProof(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task,
               CheckReport& report)
       : reader_(reader),
         options_(options),
@@ -102,7 +102,7 @@ class StreamProof {
 
   // Gives a block's vertices their slots and coordinates.
   void enter(StreamBlock<D>& block) {
-    const MeshBlock& mesh = block.block;
+    const MeshStreamBlock& mesh = block.block;
     block.first_vertex = vertices_.announced();
     block.first_simplex = simplices_entered_;
     simplices_entered_ += block.simplices();
@@ -120,7 +120,7 @@ class StreamProof {
   void report_off_lattice(std::uint64_t number, const LatticePoint& vertex, int axis) {
     if (task_ == StreamTask::kCount) return;
     ++report_.off_lattice;
-    const Lattice& lattice = *coordinates_.lattice();
+    const IntegerLattice& lattice = *coordinates_.lattice();
     NamedVertex<D> named{number, {}};
     std::copy_n(coordinates_.block_to_output(vertex).begin(), D, named.point.begin());
     faults_.add("{} is off the lattice: its {} is no integer * {} + {}", vertex_text<D>(named),
@@ -147,7 +147,7 @@ class StreamProof {
     }
   }
 
-  void require_used(const typename OpenVertices<D>::Vertex& vertex) {
+  void require_used(const typename NeededVertices<D>::Vertex& vertex) {
     if (vertex.used || task_ == StreamTask::kCount) return;
     ++unused_;
     faults_.add("{} is in no {}", vertex_text<D>(named(vertex)), Words<D>::kSimplex);
@@ -160,13 +160,13 @@ class StreamProof {
     std::array<std::uint32_t, D + 1> slots;
     for (int i = 0; i <= D; ++i) slots[i] = block.slots[block.block.corners[s * (D + 1) + i]];
     const SortedFacet<D> facet(slots.data(), opposite);
-    OpenFacet<D> entry;
+    UnpairedFacet<D> entry;
     entry.facet = facet.vertices;
     entry.apex = slots[opposite];
     entry.simplex = block.first_simplex + s;
     entry.odd = facet.odd ? 1 : 0;
     entry.positive = block.positive[s] ? 1 : 0;
-    OpenFacet<D>* older = facets_.find(entry);
+    UnpairedFacet<D>* older = facets_.find(entry);
     if (older == nullptr) {
       for (const std::uint32_t slot : slots) vertices_.hold(slot);
       facets_.insert(entry);
@@ -187,8 +187,8 @@ class StreamProof {
     facets_.erase(older);
   }
 
-  void prove_facet(const StreamBlock<D>& block, std::size_t s, const OpenFacet<D>& facet,
-                   const OpenFacet<D>& older) {
+  void prove_facet(const StreamBlock<D>& block, std::size_t s, const UnpairedFacet<D>& facet,
+                   const UnpairedFacet<D>& older) {
     if (facet.positive == 0 || older.positive == 0) return;
     if (facet.odd == older.odd) {
       faults_.add("{} and {} overlap: they lie on the same side of their common {}", text(older),
@@ -203,10 +203,10 @@ class StreamProof {
     faults_.add_apex(side, block.text(s, coordinates_), vertex_text<D>(named(apex)), text(older));
   }
 
-  [[nodiscard]] NamedVertex<D> named(const typename OpenVertices<D>::Vertex& vertex) const {
+  [[nodiscard]] NamedVertex<D> named(const typename NeededVertices<D>::Vertex& vertex) const {
     return {vertex.number, coordinates_.to_output(vertex.point)};
   }
-  [[nodiscard]] std::string text(const OpenFacet<D>& facet) const {
+  [[nodiscard]] std::string text(const UnpairedFacet<D>& facet) const {
     std::array<NamedVertex<D>, D + 1> names;
     for (int i = 0; i < D; ++i) names[i] = named(vertices_[facet.facet[i]]);
     names[D] = named(vertices_[facet.apex]);
@@ -244,8 +244,8 @@ class StreamProof {
 
   // Makes a mesh of the simplices at the boundary, for the proof that meshes in memory have.
   void check_boundary() {
-    std::vector<OpenFacet<D>> facets;
-    facets_.for_each([&](const OpenFacet<D>& facet) { facets.push_back(facet); });
+    std::vector<UnpairedFacet<D>> facets;
+    facets_.for_each([&](const UnpairedFacet<D>& facet) { facets.push_back(facet); });
     std::sort(facets.begin(), facets.end(), [this](const auto& a, const auto& b) {
       return std::pair(std::uint64_t{a.simplex}, vertices_[a.apex].number) <
              std::pair(std::uint64_t{b.simplex}, vertices_[b.apex].number);
@@ -267,7 +267,7 @@ class StreamProof {
       return it->second;
     };
     std::vector<BoundaryFacet<D>> boundary;
-    for (const OpenFacet<D>& facet : facets) {
+    for (const UnpairedFacet<D>& facet : facets) {
       BoundaryFacet<D> outwards;
       std::transform(facet.facet.begin(), facet.facet.end(), outwards.vertices.begin(), vertex_of);
       if (facet.odd != 0) std::swap(outwards.vertices[0], outwards.vertices[1]);
@@ -304,13 +304,13 @@ class StreamProof {
   }
 
   MeshStreamReader& reader_;
-  const CheckOptions& options_;
+  const CheckerOptions& options_;
   const StreamTask task_;
   CheckReport& report_;
   Faults faults_;
   const StreamCoordinates<D> coordinates_;
-  OpenVertices<D> vertices_;
-  ProbingTable<OpenFacet<D>> facets_;
+  NeededVertices<D> vertices_;
+  ProbingTable<UnpairedFacet<D>> facets_;
   std::uint64_t simplices_entered_ = 0;          // of blocks that have been read
   std::uint64_t simplices_joined_ = 0;           // of blocks that join() has seen
   std::uint64_t inner_ = 0;                      // facets with two positive simplices
@@ -323,13 +323,13 @@ class StreamProof {
 }  // namespace
 
 template <int D>
-void prove_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
+void prove_stream(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task,
                   CheckReport& report) {
   with_threads(options.threads == 0 ? available_threads() : options.threads,
                [&] { StreamProof<D>(reader, options, task, report).run(); });
 }
 
-template void prove_stream<2>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
-template void prove_stream<3>(MeshStreamReader&, const CheckOptions&, StreamTask, CheckReport&);
+template void prove_stream<2>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
+template void prove_stream<3>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

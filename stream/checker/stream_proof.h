@@ -7,7 +7,7 @@
 #include "stream/checker/checker.h"
 #include "stream/checker/stream_block.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// Reads the stream to its end and writes the outcome into the report.
 ///
@@ -15,7 +15,7 @@ namespace spillway::detail {
 /// threads, the next batch is read. What a block leaves open then meets the open facets of earlier
 /// ones, block by block. The report does not depend on the number of threads.
 template <int D>
-void prove_stream(MeshStreamReader& reader, const CheckOptions& options, StreamTask task,
+void prove_stream(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task,
                   CheckReport& report);
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

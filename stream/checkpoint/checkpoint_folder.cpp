@@ -16,7 +16,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,8 +78,8 @@ std::string CheckpointFolder::path_of(const std::string& file_name) const {
 }
 
 void CheckpointFolder::refuse(const std::string& why) const {
-  throw Error(fmt::format("cannot go on with the run in {}: {}", run_folder_, why),
-              ErrorCode::kInvalidArgument, {.file = path_});
+  throw Failure(fmt::format("cannot go on with the run in {}: {}", run_folder_, why),
+                ErrorCode::kInvalidArgument, {.file = path_});
 }
 
 /// The system lets go of it when the process ends, however it does. Where a file system has no
@@ -110,10 +110,11 @@ void CheckpointFolder::refuse_other_files() const {
     // What is left of a process that was killed before it had begun.
     const std::string name = entry.path().filename().string();
     if (name == std::string(kRunFile) + kUnfinishedEnd) continue;
-    throw Error(fmt::format("{} is no folder of a run that can go on, and not empty: it has {} in "
-                            "it; give another folder",
-                            path_, name),
-                ErrorCode::kInvalidArgument, {.file = path_});
+    throw Failure(
+        fmt::format("{} is no folder of a run that can go on, and not empty: it has {} in "
+                    "it; give another folder",
+                    path_, name),
+        ErrorCode::kInvalidArgument, {.file = path_});
   }
 }
 
@@ -280,4 +281,4 @@ void CheckpointFolder::remove() {
   fs::remove(path_, ignored);  // what is not empty stays
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

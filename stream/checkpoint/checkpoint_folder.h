@@ -13,16 +13,16 @@
 #include "formats/state/state_writer.h"
 #include "stream/checkpoint/run_identity.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// Makes a folder, if it is not there. Throws Error with the system's reason.
+/// Makes a folder, if it is not there. Throws Failure with the system's reason.
 void make_folder(const std::string& path);
 
 /// The folder of a run that can go on: what the run is of ("spillway-run"), its last checkpoint
 /// ("state"), and the scratch files that this refers to ("scratch"). One run at a time has it.
 class CheckpointFolder {
  public:
-  /// Makes the folder, or takes the one that a run of the same identity has left. Throws Error if
+  /// Makes the folder, or takes the one that a run of the same identity has left. Throws Failure if
   /// another run uses it, if it is of a run with another identity, which tells what differs, or if
   /// it has something else in it. `files` are names of others that the run makes in
   /// it. Scratch files take `cap` bytes at most at a time. `run_folder` is what messages name, if
@@ -30,7 +30,7 @@ class CheckpointFolder {
   CheckpointFolder(const std::string& path, const RunIdentity& identity,
                    std::vector<std::string> files, std::optional<std::uint64_t> cap,
                    const std::string& run_folder = "");
-  /// Takes what a run has left, whatever it is of, to remove it. Throws Error likewise.
+  /// Takes what a run has left, whatever it is of, to remove it. Throws Failure likewise.
   CheckpointFolder(const std::string& path, std::vector<std::string> files);
   CheckpointFolder(const CheckpointFolder&) = delete;
   CheckpointFolder& operator=(const CheckpointFolder&) = delete;
@@ -100,4 +100,4 @@ class CheckpointFolder {
   std::unique_ptr<KeptScratchFolder> scratch_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// A checkpoint may cost one of so many parts of the time, unless more than one a second is asked
@@ -42,4 +42,4 @@ void Checkpoints::measure(const std::function<void()>& save) {
   last_ = end;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 
 #include "stream/checkpoint/checkpoint_folder.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The checkpoints of a run: when the next one is due, and what they cost. Less often than is asked
 /// for where they would take more than a fiftieth of the time.
@@ -45,4 +45,4 @@ class Checkpoints {
   Seconds total_{0};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

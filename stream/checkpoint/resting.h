@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// Who asks a part of a run to come to rest from time to time, so that its state can be saved.
 class Resting {
@@ -13,4 +15,4 @@ class Resting {
   virtual void save() {}
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What changes when a file does.
@@ -58,4 +58,4 @@ std::string RunIdentity::difference_from(const RunIdentity& earlier) const {
   return fmt::format("{}", fmt::join(differences, "; "));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// The fact that is the path of what the run makes.
 inline constexpr const char* kOutputFact = "output";
@@ -48,4 +50,4 @@ class RunIdentity {
   std::vector<Fact> facts_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

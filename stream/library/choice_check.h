@@ -4,9 +4,9 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// Throws Error (kInvalidArgument) for a value that none of an enumeration's names has, of which
+/// Throws Failure (kInvalidArgument) for a value that none of an enumeration's names has, of which
 /// `last` is the last one. `what` is a choice in words: "kernel".
 template <typename Choice>
 void check_choice(Choice value, Choice last, const char* what) {
@@ -15,4 +15,4 @@ void check_choice(Choice value, Choice last, const char* what) {
   throw InvalidArgument(fmt::format("there is no {} of number {}", what, number));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -15,7 +15,7 @@
 #include "stream/library/meshes/program_sink.h"
 #include "stream/library/own_parts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 Report convert(MeshStreamReader& reader, const std::string& name,
@@ -39,8 +39,8 @@ Report convert(MeshStreamReader& reader, const std::string& name,
   report.lost = sink.lost_attributes(there, false);
   report.on_lattice = reader.header().lattice.has_value();
   if (sink.is_product() && report.mesh.simplices == 0) {
-    throw Error(fmt::format("{}: the mesh has no {}", name, simplices_of(dimension)),
-                ErrorCode::kDegenerateInput, {.file = name});
+    throw Failure(fmt::format("{}: the mesh has no {}", name, simplices_of(dimension)),
+                  ErrorCode::kDegenerateInput, {.file = name});
   }
   if (!reader.has_hash() && sink.tells_hash()) {
     throw InvalidArgument(fmt::format(
@@ -53,12 +53,12 @@ Report convert(MeshStreamReader& reader, const std::string& name,
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
-  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
   RunWatch watch(context);
   watch.check();
   std::optional<ProgramSink> program_sink;
@@ -73,7 +73,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     MeshStreamReader& reader = file->reader(watch, !target->is_product());
     const std::string crs = crs_of_mesh(file->path(), reader.header().crs, file->crs_choice(),
                                         target->crs_need(), context);
-    return detail::convert(reader, file->path(), extent, crs, *target, context, watch);
+    return stream::convert(reader, file->path(), extent, crs, *target, context, watch);
   }
   ProgramMesh reader(source);
   if (target->wants_extent() && reader.header().dimension == 2) {
@@ -82,7 +82,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     }
     extent = {plane_of(*extent_of_blocks(reader.header())), reader.header().points.value_or(0)};
   }
-  return detail::convert(reader, "the mesh", extent, reader.header().crs, *target, context, watch);
+  return stream::convert(reader, "the mesh", extent, reader.header().crs, *target, context, watch);
 }
 
 }  // namespace spillway

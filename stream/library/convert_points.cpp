@@ -15,9 +15,9 @@
 #include "stream/library/points/program_points.h"
 #include "stream/library/points/public_points.h"
 #include "stream/library/sort_points.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Pieces of the inputs under way at a time.
@@ -67,7 +67,7 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
   header.count = points.stream->expected();
   if (points.extent) header.extent = Extent{points.extent->lo, points.extent->hi};
   header.crs = points.crs;
-  const std::optional<Lattice>& lattice = points.stream->lattice();
+  const std::optional<IntegerLattice>& lattice = points.stream->lattice();
   header.lattice = public_lattice(lattice, points.heights_on_lattice);
   header.attributes = points.attributes.attributes();
   sink.begin(header);
@@ -83,12 +83,12 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 PointConversion convert(PointSource& source, PointSink& sink, const Context& context) {
-  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
   RunWatch watch(context);
   watch.check();
   std::optional<ProgramPoints> program_points;

@@ -2,7 +2,7 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 std::string checked_crs(const std::string& crs) {
   if (crs.empty()) return "";
@@ -23,4 +23,4 @@ std::string crs_of_mesh(const std::string& name, const std::string& told, const 
   return settled_crs(facts, need, options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,9 +6,9 @@
 
 #include "stream/source/source_crs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// A coordinate system that a caller gives, on one line: codes as they are, else WKT. Throws Error
+/// A coordinate system that a caller gives, on one line: codes as they are, else WKT. Throws Failure
 /// if GDAL cannot read it, or is not there.
 std::string checked_crs(const std::string& crs);
 
@@ -17,4 +17,4 @@ std::string checked_crs(const std::string& crs);
 std::string crs_of_mesh(const std::string& name, const std::string& told, const CrsChoice& choice,
                         CrsNeed need, const Context& context);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

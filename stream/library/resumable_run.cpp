@@ -22,18 +22,18 @@
 #include "stream/library/meshes/mesh_file.h"
 #include "stream/library/meshes/mesh_passage.h"
 #include "stream/plan/run_trace.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
-constexpr const char* kFiguresFile = "figures";
+constexpr const char* kStatisticsFile = "figures";
 constexpr const char* kCompleteFile = "complete";
 constexpr const char* kMeshFile = "mesh.spm";
 
 /// What a run makes in its folder beside its checkpoint.
 const std::vector<std::string>& own_files() {
-  static const std::vector<std::string> names = {kFiguresFile, kCompleteFile, kMeshFile};
+  static const std::vector<std::string> names = {kStatisticsFile, kCompleteFile, kMeshFile};
   return names;
 }
 
@@ -72,8 +72,8 @@ RunIdentity identity_of(const Run& run, const EnginePoints& points) {
   add("heights", static_cast<int>(options.heights));
   add("longest edge", options.max_edge ? fmt::format("{}", *options.max_edge) : "any");
   add("input index", options.input_index);
-  add("tile", options.tile_points);
-  add("base case", options.leaf_points);
+  add("tile points", options.tile_points);
+  add("leaf points", options.leaf_points);
   add("division", static_cast<int>(options.division));
   add("children", options.children);
   add("trust in headers", options.trust_headers);
@@ -94,10 +94,10 @@ namespace {
 
 /// What is known of a triangulation that is complete, for whoever has only to complete its output.
 template <typename State>
-void transfer_figures(State& state, Report& report) {
+void transfer_statistics(State& state, Report& report) {
   state.section("figures");
   state(report.mesh, report.left_out, report.threads, report.tiles, report.leaves,
-        report.tile_capacity, report.leaf_size, report.spilled_points, report.spilled_bytes,
+        report.tile_points, report.leaf_points, report.spilled_points, report.spilled_bytes,
         report.final_in_leaves, report.final_in_tiles, report.final_by_level, report.retriangulated,
         report.border_simplices, report.border_bytes, report.divided_points,
         report.first_block_read_points, report.tile_shapes, report.dimension, report.points,
@@ -143,15 +143,15 @@ class ResumableRun {
   Report run() {
     tell();
     if (is_complete()) return report_of_complete(kCompleteFile);
-    if (has_its_name()) return report_of_complete(kFiguresFile);
+    if (has_its_name()) return report_of_complete(kStatisticsFile);
     try {
       Report report = run_.sink.goes_on() ? run_to_sink() : run_to_mesh();
       tell_cost();
       CheckpointFolder::bring_to_disk(run_.identity->value_of(kOutputFact));
-      if (run_.sink.as_mesh_file() != nullptr) save_figures(kCompleteFile, report);
+      if (run_.sink.as_mesh_file() != nullptr) save_statistics(kCompleteFile, report);
       remove();
       return report;
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       const bool has_nothing = !folder_.has_checkpoint() && !has_mesh();
       if (has_nothing || error.facts().remedy == Remedy::kMemory) {
         give_up();
@@ -200,7 +200,7 @@ class ResumableRun {
   void remove() { remove_run(folder_); }
 
   /// Whether another process has ended before it had removed all. Of what is no mesh file more is
-  /// told than these figures, so that its last step is done again.
+  /// told than these statistics, so that its last step is done again.
   [[nodiscard]] bool is_complete() const {
     const MeshTarget* const target = run_.sink.as_mesh_file();
     return target != nullptr && folder_.has(kCompleteFile) && disk().exists(target->path);
@@ -209,7 +209,7 @@ class ResumableRun {
   /// Of a run whose output was complete when another process ended.
   Report report_of_complete(const char* file) {
     Report report;
-    read_figures(file, report);
+    read_statistics(file, report);
     if (const MeshTarget* const target = run_.sink.as_mesh_file()) {
       std::error_code ignored;
       report.output_format = target->format->name;
@@ -226,7 +226,7 @@ class ResumableRun {
     start.files = &folder_.outputs();
     start.scratch = &folder_.scratch();
     Report report = triangulate_to(run_.sink.start(start), setup(run_.sink), run_);
-    save_figures(kFiguresFile, report);
+    save_statistics(kStatisticsFile, report);
     run_.sink.complete(run_.watch, report);
     return report;
   }
@@ -236,13 +236,13 @@ class ResumableRun {
   [[nodiscard]] bool has_its_name() const {
     const MeshTarget* const target = run_.sink.as_mesh_file();
     if (target == nullptr || !run_.sink.goes_on() || target->format->open_block_writer == nullptr ||
-        !folder_.has(kFiguresFile) || folder_.has_unfinished(target->path)) {
+        !folder_.has(kStatisticsFile) || folder_.has_unfinished(target->path)) {
       return false;
     }
     namespace fs = std::filesystem;
     std::error_code missing;
     const auto written = fs::last_write_time(target->path, missing);
-    return !missing && written >= fs::last_write_time(folder_.path_of(kFiguresFile));
+    return !missing && written >= fs::last_write_time(folder_.path_of(kStatisticsFile));
   }
 
   /// Blocks go to a mesh in the folder, and all of it to the sink.
@@ -252,7 +252,7 @@ class ResumableRun {
     const std::string path = folder_.path_of(kMeshFile);
     Report report;
     if (has_mesh()) {
-      read_figures(kFiguresFile, report);
+      read_statistics(kStatisticsFile, report);
     } else {
       make_mesh(path, report);
     }
@@ -261,13 +261,13 @@ class ResumableRun {
   }
 
   [[nodiscard]] bool has_mesh() const {
-    return folder_.has(kFiguresFile) && folder_.has(kMeshFile);
+    return folder_.has(kStatisticsFile) && folder_.has(kMeshFile);
   }
 
   void make_mesh(const std::string& path, Report& report) {
     MeshInFolder mesh(folder_.outputs(), path, run_.start().header);
     report = triangulate_to(*mesh.begin_again(), setup(mesh), run_);
-    save_figures(kFiguresFile, report);
+    save_statistics(kStatisticsFile, report);
     mesh.finish(report.mesh);
     folder_.forget_checkpoint();
   }
@@ -289,12 +289,12 @@ class ResumableRun {
     return open_spm_reader(std::make_unique<InputBytes>(disk().open(path)));
   }
 
-  void save_figures(const char* file, Report& report) {
-    folder_.save(file, [&](StateWriter& state) { transfer_figures(state, report); });
+  void save_statistics(const char* file, Report& report) {
+    folder_.save(file, [&](StateWriter& state) { transfer_statistics(state, report); });
   }
-  void read_figures(const char* file, Report& report) {
+  void read_statistics(const char* file, Report& report) {
     const std::unique_ptr<StateReader> state = folder_.open(file);
-    transfer_figures(*state, report);
+    transfer_statistics(*state, report);
     state->finish();
     report.skipped_files = run_.points.files->skipped();
   }
@@ -314,4 +314,4 @@ void discard_run(const std::string& folder, const std::string& output) {
   remove_run(left);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

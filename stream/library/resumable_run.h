@@ -5,9 +5,9 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/library/run.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// What tells a run with a TriangulateOptions::resume_folder from others. Throws Error if it cannot
+/// What tells a run with a TriangulateOptions::resume_folder from others. Throws Failure if it cannot
 /// go on as a whole.
 RunIdentity identity_of(const Run& run, const EnginePoints& points);
 
@@ -20,8 +20,8 @@ std::string once_only_notice(const Run& run);
 Report triangulate_resumably(Run& run);
 
 /// Removes what a run has left in its folder, and what it has begun of its output, `output`, for
-/// good. Throws Error if the folder is of something else, is damaged, or if another process uses
+/// good. Throws Failure if the folder is of something else, is damaged, or if another process uses
 /// it.
 void discard_run(const std::string& folder, const std::string& output);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -13,7 +13,7 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/plan/run_setup.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A triangulation that is about to begin.
 struct Run {
@@ -35,4 +35,4 @@ struct Run {
 /// Triangulates in this process, and gives all blocks to `blocks`, which are not finished yet.
 Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,11 +10,11 @@
 #include "src/parallel/parallel.h"
 #include "stream/library/context/context_state.h"
 #include "stream/plan/memory_plan.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 #include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/tile_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The usual number of points of a cell: one block of the file.
@@ -224,7 +224,7 @@ class Sorting : private DealingWatch {
   }
 
   PointStream& points_;
-  const detail::PointSource* files_;
+  const stream::JoinedInputs* files_;
   PointFile& file_;
   RunWatch& watch_;
   std::uint64_t memory_;
@@ -249,4 +249,4 @@ PointConversion sort_points(const RunPoints& points, PointFile& file, const Cont
   return done;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -14,9 +14,9 @@
 #include "stream/library/resumable_run.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 void check(const TriangulateOptions& options) {
@@ -42,14 +42,14 @@ void check(const RunPoints& points, int dimension) {
     throw InvalidArgument(fmt::format("the files were opened for {} dimensions, not for {}",
                                       points.dimension, dimension));
   }
-  const std::optional<Lattice>& lattice = points.stream->lattice();
+  const std::optional<IntegerLattice>& lattice = points.stream->lattice();
   if (points.files != nullptr && lattice && !lattice->isotropic(dimension)) {
     throw InvalidArgument(fmt::format(
         "the files were not opened to be triangulated: open them for {} dimensions", dimension));
   }
   // Files without z are told of when they are opened.
   if (points.dimension == 0 && dimension == 3 && !points.has_heights) {
-    throw Error("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
+    throw Failure("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
   }
 }
 
@@ -65,9 +65,9 @@ Report triangulate_here(Run& run) {
 Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
-  static_cast<RunFigures&>(report) = run.engine.asked.dimension == 2
-                                         ? triangulate_stream<2>(points, blocks, setup)
-                                         : triangulate_stream<3>(points, blocks, setup);
+  static_cast<RunStatistics&>(report) = run.engine.asked.dimension == 2
+                                            ? triangulate_stream<2>(points, blocks, setup)
+                                            : triangulate_stream<3>(points, blocks, setup);
   if (report.threads < run.engine.threads && run.context.options().detail) {
     run.context.options().detail(
         fmt::format("{} of {} threads used: more of them need a larger memory limit",
@@ -96,13 +96,13 @@ MeshStart Run::start() const {
   return start;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions& options,
                    const Context& context) {
-  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
   check(options);
   RunWatch watch(context);
   watch.check();

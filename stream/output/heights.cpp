@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 using Height = std::pair<double, std::uint64_t>;  // z and place in the order of the input
@@ -15,10 +15,10 @@ std::uint64_t rank_of(VertexId place, std::span<const std::uint64_t> order) {
 }
 
 /// `sign` is 1 for the lowest, -1 for the highest.
-void take_extreme(std::span<const Duplicate> duplicates, double sign,
+void take_extreme(std::span<const DroppedDuplicate> duplicates, double sign,
                   std::span<VertexId> input_index, std::span<const double> heights,
                   std::span<const std::uint64_t> order) {
-  for (const Duplicate& duplicate : duplicates) {
+  for (const DroppedDuplicate& duplicate : duplicates) {
     VertexId& kept = input_index[duplicate.kept];
     const VertexId other = input_index[duplicate.dropped];
     if (Height(sign * heights[other], rank_of(other, order)) <
@@ -29,10 +29,12 @@ void take_extreme(std::span<const Duplicate> duplicates, double sign,
 }
 
 /// Keeps the identity of the first.
-void take_mean(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
+void take_mean(std::span<const DroppedDuplicate> duplicates, std::span<VertexId> input_index,
                std::span<double> heights, std::span<const std::uint64_t> order) {
-  std::vector<Duplicate> by_vertex(duplicates.begin(), duplicates.end());
-  const auto kept_before = [](const Duplicate& a, const Duplicate& b) { return a.kept < b.kept; };
+  std::vector<DroppedDuplicate> by_vertex(duplicates.begin(), duplicates.end());
+  const auto kept_before = [](const DroppedDuplicate& a, const DroppedDuplicate& b) {
+    return a.kept < b.kept;
+  };
   std::sort(by_vertex.begin(), by_vertex.end(), kept_before);
   std::vector<double> stack;
   for (auto group = by_vertex.begin(); group != by_vertex.end();) {
@@ -54,17 +56,17 @@ void take_mean(std::span<const Duplicate> duplicates, std::span<VertexId> input_
 
 }  // namespace
 
-void keep_first(std::span<const Duplicate> duplicates, std::span<VertexId> input_index,
+void keep_first(std::span<const DroppedDuplicate> duplicates, std::span<VertexId> input_index,
                 std::span<const std::uint64_t> order) {
   if (order.empty()) return;
-  for (const Duplicate& duplicate : duplicates) {
+  for (const DroppedDuplicate& duplicate : duplicates) {
     VertexId& kept = input_index[duplicate.kept];
     const VertexId other = input_index[duplicate.dropped];
     if (order[other] < order[kept]) kept = other;
   }
 }
 
-void choose_heights(std::span<const Duplicate> duplicates, Heights choice,
+void choose_heights(std::span<const DroppedDuplicate> duplicates, Heights choice,
                     std::span<VertexId> input_index, std::span<double> heights,
                     std::span<const std::uint64_t> order) {
   switch (choice) {
@@ -83,4 +85,4 @@ void choose_heights(std::span<const Duplicate> duplicates, Heights choice,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

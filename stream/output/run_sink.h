@@ -5,7 +5,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Who makes something of the blocks of a run: what it is told of the points besides, and whether
 /// it can begin again.
@@ -33,4 +33,4 @@ class RunSink {
   virtual BlockSink* begin_again() { return nullptr; }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

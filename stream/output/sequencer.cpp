@@ -6,7 +6,7 @@
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 std::uint64_t table_bytes(std::uint64_t blocks) {
@@ -36,7 +36,7 @@ void Sequencer<D>::open_slot(std::uint32_t slot, std::uint32_t blocks) {
 }
 
 template <int D>
-void Sequencer<D>::submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
+void Sequencer<D>::submit(BlockPlace place, MeshStreamBlock mesh, std::vector<StreamPlace> imported,
                           const CanonicalHash<D>& hash) {
   const std::uint64_t vertices = mesh.vertices.size();
   const std::uint64_t simplices = mesh.corners.size() / (D + 1);
@@ -102,7 +102,7 @@ template <int D>
 void Sequencer<D>::write(Waiting&& waiting) {
   StageTimer timer(times_, Stage::kWrite, StepOrder::kInOrder);
   timer.move_bytes(waiting.bytes);
-  MeshBlock& mesh = waiting.mesh;
+  MeshStreamBlock& mesh = waiting.mesh;
   if (counts_facets_) {
     open_facets_.add_block(waiting.corners, {vertices_, waiting.vertices, mesh.imported});
   }
@@ -168,4 +168,4 @@ template void Sequencer<3>::state(StateWriter&);
 template class Sequencer<2>;
 template class Sequencer<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

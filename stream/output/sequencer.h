@@ -12,11 +12,11 @@
 #include "src/geometry/canonical_hash.h"
 #include "src/runtime/memory_budget.h"
 #include "src/runtime/stage_times.h"
-#include "stream/output/open_facets.h"
 #include "stream/output/output_options.h"
 #include "stream/output/stream_place.h"
+#include "stream/output/unpaired_facets.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Brings the blocks of leaves and merges, which are ready in any order, into the stream in the
 /// order of their places, and numbers the vertices.
@@ -34,12 +34,12 @@ class Sequencer {
   void tell_first_block(std::function<void()> tell) { tell_first_block_ = std::move(tell); }
 
   /// Tells how many blocks a slot has, at least one; once for every slot, in any order. Throws
-  /// Error (kOutOfBudget) if the table of blocks does not fit into the budget.
+  /// Failure (kOutOfBudget) if the table of blocks does not fit into the budget.
   void open_slot(std::uint32_t slot, std::uint32_t blocks);
 
   /// Takes what settle() made for one block; each comes once, from any thread. The sink absorbs it
   /// at once, in the calling thread.
-  void submit(BlockPlace place, MeshBlock mesh, std::vector<StreamPlace> imported,
+  void submit(BlockPlace place, MeshStreamBlock mesh, std::vector<StreamPlace> imported,
               const CanonicalHash<D>& hash);
 
   /// Waits until at most `bytes` bytes of blocks wait for their turn, or until it is the turn of
@@ -53,7 +53,7 @@ class Sequencer {
   [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const;
 
   /// The facets of one simplex only, where simplices are left out; once all blocks are written.
-  [[nodiscard]] const OpenFacets<D>& open_facets() const { return open_facets_; }
+  [[nodiscard]] const UnpairedFacets<D>& open_facets() const { return open_facets_; }
 
   /// How many slots have been written, all of whose blocks have come. What of later slots has come
   /// waits: there may be none of it for state().
@@ -66,7 +66,7 @@ class Sequencer {
 
  private:
   struct Waiting {
-    MeshBlock mesh;
+    MeshStreamBlock mesh;
     std::vector<StreamPlace> imported;
     std::vector<std::uint32_t> corners;  ///< the mesh's, if facets are counted
     std::uint64_t vertices = 0;  ///< that the block announces; the mesh may be encoded already
@@ -97,7 +97,7 @@ class Sequencer {
   bool counts_facets_;
   bool given_up_ = false;
   bool writing_ = false;  ///< somebody is, or an error has ended it
-  OpenFacets<D> open_facets_;
+  UnpairedFacets<D> open_facets_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// The place of a block in the stream: tiles and merges of tiles have a slot each, in the order in
 /// which they come, and one or many blocks in it.
@@ -24,4 +26,4 @@ struct StreamPlace {
   [[nodiscard]] bool announced() const { return block.slot != BlockPlace::kNowhere; }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 
 #include "stream/checkpoint/checkpoints.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// How an engine does its work: what the caller asked for, and what follows from where it runs.
 struct EngineOptions {
@@ -22,4 +22,4 @@ struct EngineOptions {
   std::optional<std::size_t> gather_below{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What memory is needed for, by dimension; measured, see docs/performance-history.md.
@@ -103,28 +103,28 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   const std::size_t leaf_bytes = costs.leaf_bytes + kLeafRecords * record_size;
   plan.buffered_points = share(limit, part * costs.buffer_share, kBufferedPointBytes + record_size);
   plan.tile_room = share(limit, part * kTileShare, costs.tile_bytes + kTileRecords * record_size);
-  plan.tile_capacity = std::min(plan.tile_room, costs.good_tile);
-  plan.leaf_size =
-      std::min({costs.good_leaf, share(limit, costs.leaf_share, leaf_bytes), plan.tile_capacity});
+  plan.tile_points = std::min(plan.tile_room, costs.good_tile);
+  plan.leaf_points =
+      std::min({costs.good_leaf, share(limit, costs.leaf_share, leaf_bytes), plan.tile_points});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
   plan.sketch_bytes = share(limit, kSketchShare, 1);
   plan.batches = std::clamp(
       share(limit, kBatchesShare, kBatchPoints * (kBatchPointBytes + kBatchRecords * record_size)),
       early ? kLeastEarlyBatches : kLeastBatches,
       std::max<std::size_t>(kEnoughBatches, kBatchesOfThread * wanted_threads));
-  const std::size_t most = share(limit, costs.leaves_share, leaf_bytes * plan.leaf_size);
+  const std::size_t most = share(limit, costs.leaves_share, leaf_bytes * plan.leaf_points);
   plan.threads = static_cast<unsigned>(std::clamp<std::size_t>(most, 1, wanted_threads));
   return plan;
 }
 
-std::size_t tile_capacity_for(std::uint64_t points, const MemoryPlan& plan) {
-  return std::clamp<std::size_t>(points / kManyTiles, plan.tile_capacity, plan.tile_room);
+std::size_t tile_points_for(std::uint64_t points, const MemoryPlan& plan) {
+  return std::clamp<std::size_t>(points / kManyTiles, plan.tile_points, plan.tile_room);
 }
 
-std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan) {
+std::size_t leaf_points_for(std::uint64_t points, int dimension, const MemoryPlan& plan) {
   const Costs& costs = costs_of(dimension);
   return std::clamp<std::size_t>(points / costs.enough_leaves,
-                                 std::min(costs.small_leaf, plan.leaf_size), plan.leaf_size);
+                                 std::min(costs.small_leaf, plan.leaf_points), plan.leaf_points);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

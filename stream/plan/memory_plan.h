@@ -3,15 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// How a memory limit is shared out. Of this only the number of batches depends on the number of
 /// threads, and the order of the output does not depend on that.
 struct MemoryPlan {
   std::size_t buffered_points = 0;  ///< waiting in memory to be spilled
   std::size_t tile_room = 0;        ///< points of a tile, if two are loaded at a time
-  std::size_t tile_capacity = 0;    ///< points of a tile, unless there are very many
-  std::size_t leaf_size = 0;        ///< largest number of points of a leaf
+  std::size_t tile_points = 0;      ///< points of a tile, unless there are very many
+  std::size_t leaf_points = 0;      ///< largest number of points of a leaf
   std::uint64_t waiting_bytes = 0;  ///< of output that waits for its turn while tiles are begun
   std::uint64_t sketch_bytes = 0;   ///< of what tells where the points of other tiles lie
   std::size_t batches = 1;          ///< of points, on their way to their tiles
@@ -27,10 +29,10 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
 
 /// The capacity of tiles for `points` points: the plan's, and larger where that would be very many
 /// tiles, as far as there is room.
-std::size_t tile_capacity_for(std::uint64_t points, const MemoryPlan& plan);
+std::size_t tile_points_for(std::uint64_t points, const MemoryPlan& plan);
 
-/// The size of leaves of `points` points: at most plan.leaf_size, and smaller where there are few
+/// The size of leaves of `points` points: at most plan.leaf_points, and smaller where there are few
 /// points, so that all threads have something to do.
-std::size_t leaf_size_for(std::uint64_t points, int dimension, const MemoryPlan& plan);
+std::size_t leaf_points_for(std::uint64_t points, int dimension, const MemoryPlan& plan);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// Who is told how far a run is. What it throws ends the run.
 class RunProgress {
@@ -22,4 +24,4 @@ class RunProgress {
   virtual void warn(std::string_view /*text*/) {}
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 #include "stream/plan/engine_options.h"
 #include "stream/plan/run_progress.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What a run works with. All of it outlives the run.
 struct RunSetup {
@@ -17,4 +17,4 @@ struct RunSetup {
   RunProgress& progress;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/runtime/stage_times.h"
 #include "src/runtime/task.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A node of the tree over tiles that is done: a tile, or a merge of tiles.
 struct TaskNode {
@@ -69,8 +69,8 @@ struct RankMerge {
 };
 
 /// What one of several processes did.
-struct RankFigures {
-  RunFigures run;
+struct RankStatistics {
+  RunStatistics run;
   std::vector<TaskSum> task_sums{};  ///< by scope, level and kind
   std::uint64_t peak_memory = 0;     ///< bytes that the process has held
   std::uint64_t messages_sent = 0;
@@ -83,11 +83,11 @@ struct RankFigures {
 
 /// What a run knows when it has ended.
 struct RunSums {
-  std::vector<TaskSum> tasks{};      ///< by scope, level and kind, of all ranks
-  std::vector<RankFigures> ranks{};  ///< at the first of several ranks: what each has done
+  std::vector<TaskSum> tasks{};         ///< by scope, level and kind, of all ranks
+  std::vector<RankStatistics> ranks{};  ///< at the first of several ranks: what each has done
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
@@ -102,16 +102,16 @@ class RunTrace {
   [[nodiscard]] virtual bool takes_steps() const { return false; }
 
   /// What the run keeps to, before the first step.
-  virtual void limits(const detail::RunLimits& /*limits*/) {}
+  virtual void limits(const stream::RunLimits& /*limits*/) {}
   /// A step that is done, by the thread that has done it. Must not throw.
-  virtual void step(const detail::StageStep& /*step*/) {}
+  virtual void step(const runtime::StageStep& /*step*/) {}
   /// A node that is done, children before parents and else in any order. What it throws ends the
   /// run.
-  virtual void node(const detail::TaskNode& /*node*/) {}
+  virtual void node(const stream::TaskNode& /*node*/) {}
   /// The run begins again: all that was told so far is void.
   virtual void begin_again() {}
   /// The run has ended, but for completing the output.
-  virtual void end(const detail::RunSums& /*sums*/) {}
+  virtual void end(const stream::RunSums& /*sums*/) {}
 };
 
 }  // namespace spillway

@@ -8,7 +8,7 @@
 #include "formats/blocks/columns.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// A block's kind is the number of its points, and what they have besides coordinates.
@@ -116,4 +116,4 @@ void decode_all_points(std::span<const std::byte> blocks, const FileSpot& where,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -14,9 +14,9 @@
 #include "stream/points/point_buffer.h"
 #include "stream/points/points_view.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// Throws Error(kInvalidArgument) for more bytes of attributes than a point may have that waits.
+/// Throws Failure(kInvalidArgument) for more bytes of attributes than a point may have that waits.
 void refuse_large_records(std::size_t record_size);
 
 /// Where a block lies in a file, and how many points it holds.
@@ -48,4 +48,4 @@ void decode_points(std::span<const std::byte> block, const FileSpot& where, Poin
 void decode_all_points(std::span<const std::byte> blocks, const FileSpot& where,
                        PointBlock& points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 EqualPoints::EqualPoints(int dimension, Heights choice)
     : mean_(dimension == 2 && choice == Heights::kMean) {
@@ -39,4 +39,4 @@ PointBlock EqualPoints::choose() {
   return std::move(chosen_);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

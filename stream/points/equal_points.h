@@ -8,7 +8,7 @@
 #include "src/geometry/framed_point.h"
 #include "stream/points/points_view.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Makes one point of any number of points that are one vertex: the same as choose_heights() (in
 /// space keep_first()) would make of them, without having all in memory. Only the mean takes 8
@@ -46,4 +46,4 @@ class EqualPoints {
   std::vector<double> heights_;  ///< for their mean
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

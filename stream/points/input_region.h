@@ -6,7 +6,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A part of the points to come, all of which lie in a box. Regions of one unit come one after the
 /// other: those of an input that can only be read from front to back.
@@ -22,4 +22,4 @@ struct RegionOrder {
   std::vector<std::size_t> regions{};  ///< in the order in which they come then
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

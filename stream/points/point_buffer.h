@@ -16,7 +16,7 @@
 #include "src/runtime/run_memory.h"
 #include "stream/points/points_view.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points waiting in memory, in the order in which they came, in pages: growing never copies, and
 /// what is let go of serves any other buffer, or goes back to the system. There is room for less
@@ -156,4 +156,4 @@ class PointBuffer {
   std::size_t record_size_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

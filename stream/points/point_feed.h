@@ -6,7 +6,7 @@
 
 #include "formats/points/common/point_reader.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A piece of one input, fetched but not decoded; or of points that are ready, without a reader.
 struct SourcePiece {
@@ -31,4 +31,4 @@ class PointFeed {
   virtual void decode(SourcePiece& piece, PointBlock& block) = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

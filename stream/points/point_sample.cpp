@@ -6,7 +6,7 @@
 
 #include "src/delaunay/common/hash.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Points that span so much of the extent on every axis show the whole distribution.
@@ -55,4 +55,4 @@ void append_expected_points(std::vector<LatticePoint>& sample, const Box<3>& see
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// About every `stride`-th of points that come in several spans. Jittered: rows of grids and scan
 /// lines have a period.
@@ -35,4 +35,4 @@ bool spans_extent(const Box<3>& box, const Box<3>& extent, int dimension);
 void append_expected_points(std::vector<LatticePoint>& sample, const Box<3>& seen,
                             const Box<3>& extent, int dimension, double more);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

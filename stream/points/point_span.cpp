@@ -7,7 +7,7 @@
 #include "src/delaunay/base_case/affine_basis.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 template <int D>
@@ -65,14 +65,14 @@ void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points) {
   const char* const simplex = D == 2 ? "triangle" : "tetrahedron";
   const std::size_t independent = span.facts().points.size();
   if (!span.facts().others) {
-    throw Error(fmt::format("the input has only {} distinct point{}: a {} needs {}", independent,
-                            independent == 1 ? "" : "s", simplex, D + 1),
-                ErrorCode::kDegenerateInput);
+    throw Failure(fmt::format("the input has only {} distinct point{}: a {} needs {}", independent,
+                              independent == 1 ? "" : "s", simplex, D + 1),
+                  ErrorCode::kDegenerateInput);
   }
-  throw Error(fmt::format("all {} points lie {}: there is no {} to make", points,
-                          independent == 2 ? "on one line" : "in one plane", simplex),
-              ErrorCode::kDegenerateInput,
-              {.remedy = independent == 3 ? Remedy::kPlane : Remedy::kNone});
+  throw Failure(fmt::format("all {} points lie {}: there is no {} to make", points,
+                            independent == 2 ? "on one line" : "in one plane", simplex),
+                ErrorCode::kDegenerateInput,
+                {.remedy = independent == 3 ? Remedy::kPlane : Remedy::kNone});
 }
 
 template class PointSpan<2>;
@@ -80,4 +80,4 @@ template class PointSpan<3>;
 template void refuse_flat_points<2>(const PointSpan<2>&, std::uint64_t);
 template void refuse_flat_points<3>(const PointSpan<3>&, std::uint64_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Whether points that come block by block span D dimensions: exact, and over as soon as D + 1 of
 /// them are found that do. Until then each point costs a predicate.
@@ -44,8 +44,8 @@ class PointSpan {
   std::atomic<bool> full_ = false;
 };
 
-/// Throws Error unless the `points` points span D dimensions; it says what they are instead.
+/// Throws Failure unless the `points` points span D dimensions; it says what they are instead.
 template <int D>
 void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points side by side that lie elsewhere, with what each has besides its coordinates.
 struct PointsView {
@@ -41,4 +41,4 @@ struct PointsView {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

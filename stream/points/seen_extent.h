@@ -6,7 +6,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The box around points in x and y, as many threads see them.
 class SeenExtent {
@@ -30,4 +30,4 @@ class SeenExtent {
   Box<2> box_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -22,7 +22,7 @@
 #include "stream/ranks/shared_mesh_output.h"
 #include "stream/ranks/stream_sections.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 using distributed::Ranks;
@@ -129,7 +129,7 @@ class CollectedMeshOutput : public MeshOutput {
 
   std::uint64_t write(std::unique_ptr<CollectedStream> collected, const MeshTotals& totals) {
     const auto reader = open_spm_reader(std::make_unique<InputBytes>(std::move(collected)));
-    MeshBlock block;
+    MeshStreamBlock block;
     while (reader->read(block)) writer_->write(std::move(block));
     writer_->finish(totals);
     return writer_->bytes_written();
@@ -191,4 +191,4 @@ std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget
                       : open_one_file(files, target, header, scratch, ranks);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

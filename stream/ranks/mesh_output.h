@@ -12,7 +12,7 @@
 #include "stream/library/meshes/mesh_file.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The output of triangulate_over_ranks(). One of:
 /// - spm and formats with records (binary PLY) in a file: all ranks write to it, each at its
@@ -32,7 +32,7 @@ class MeshOutput {
   [[nodiscard]] MeshStreamWriter& writer() { return spool_; }
 
   /// Completes the output and returns its bytes, of all files, at all ranks. Uses up `mesh.merged`.
-  /// Collective. Throws Error at one rank, while the others wait to be ended.
+  /// Collective. Throws Failure at one rank, while the others wait to be ended.
   virtual std::uint64_t finish(RankMesh& mesh) = 0;
 
  protected:
@@ -45,11 +45,11 @@ class MeshOutput {
 void finish_own_blocks(MeshSpool& spool, const RankMesh& mesh);
 
 /// Creates the output's files, still under temporary names. Rank 0's header counts where they
-/// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Error or
+/// differ. `scratch` and `ranks` must outlive the output. Collective. Throws Failure or
 /// InvalidArgument at rank 0 if that cannot be done or the format does not hold the mesh, while the
 /// others wait to be ended.
 std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget& target,
                                              const MeshStreamHeader& header, ScratchFolder& scratch,
                                              const distributed::Ranks& ranks);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

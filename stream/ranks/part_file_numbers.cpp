@@ -4,14 +4,14 @@
 
 #include "formats/meshes/common/global_ids.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 PartFileNumbers::PartFileNumbers(const RankMesh& mesh) : sections_(mesh.sections) {
   if (mesh.own_section) append_run(sections_[*mesh.own_section]);
 }
 
-MeshBlock PartFileNumbers::take(MergedSection&& merged) {
-  MeshBlock block = std::move(merged.mesh);
+MeshStreamBlock PartFileNumbers::take(MergedSection&& merged) {
+  MeshStreamBlock block = std::move(merged.mesh);
   const std::vector<std::uint64_t> used = std::exchange(block.imported, {});
   const std::size_t announced = block.vertices.size();
   append_run(sections_[merged.section]);
@@ -61,4 +61,4 @@ std::optional<std::uint64_t> PartFileNumbers::find(std::uint64_t global) const {
   return found == foreign_.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -9,7 +9,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The vertices of a mesh that stands for itself: those of this rank's sections of the stream, and
 /// those of other sections that simplices there use. They are numbered as they come.
@@ -20,17 +20,17 @@ class PartFileNumbers {
 
   /// Takes what a merge has made final, in the order of the stream: the block as it is in this
   /// rank's own mesh, where vertices of others are new ones.
-  MeshBlock take(MergedSection&& merged);
+  MeshStreamBlock take(MergedSection&& merged);
 
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
 
   /// The numbers of these vertices in the stream.
-  [[nodiscard]] const std::vector<IdRun>& global_ids() const { return ids_; }
+  [[nodiscard]] const std::vector<IdRange>& global_ids() const { return ids_; }
 
  private:
   /// Vertices of a section of the stream, by both numbers.
   struct Run {
-    IdRun global;
+    IdRange global;
     std::uint64_t local = 0;
   };
 
@@ -41,8 +41,8 @@ class PartFileNumbers {
   const std::vector<StreamSection>& sections_;
   std::vector<Run> own_;                                      ///< a run for each section
   std::unordered_map<std::uint64_t, std::uint64_t> foreign_;  ///< own number by that in the stream
-  std::vector<IdRun> ids_;
+  std::vector<IdRange> ids_;
   std::uint64_t vertices_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -13,11 +13,11 @@
 #include "formats/meshes/part_file_names.h"
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spool/spm_section.h"
-#include "stream/output/open_facets.h"
+#include "stream/output/unpaired_facets.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/part_file_numbers.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 using distributed::Ranks;
@@ -45,9 +45,9 @@ class HeldOutput : public OutputFile {
 
 template <int D>
 std::uint64_t count_open_facets(const MeshSpool& spool) {
-  OpenFacets<D> facets;
+  UnpairedFacets<D> facets;
   const std::unique_ptr<MeshStreamReader> reader = spool.open();
-  MeshBlock block;
+  MeshStreamBlock block;
   std::vector<std::uint64_t> corners;
   for (std::uint64_t first = 0; reader->read(block); first += block.vertices.size()) {
     corners.clear();
@@ -84,7 +84,7 @@ class PartFiles : public MeshOutput {
 
   std::uint64_t finish(RankMesh& mesh) override {
     MeshTotals totals;
-    std::vector<IdRun> ids;
+    std::vector<IdRange> ids;
     run_collective_step(ranks_, [&] { totals = fill_spool(mesh, ids); });
     std::uint64_t colours_exceed = spool_.colours_are_bytes() ? 0 : 1;
     ranks_.reduce(std::span(&colours_exceed, 1), Reduction::kMost);
@@ -119,10 +119,10 @@ class PartFiles : public MeshOutput {
 
   [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
 
-  MeshTotals fill_spool(RankMesh& mesh, std::vector<IdRun>& ids) {
+  MeshTotals fill_spool(RankMesh& mesh, std::vector<IdRange>& ids) {
     PartFileNumbers numbers(mesh);
     MeshTotals totals;
-    totals.canonical_hash = mesh.figures.mesh.canonical_hash;
+    totals.canonical_hash = mesh.statistics.mesh.canonical_hash;
     if (mesh.own_section) totals.simplices = mesh.sections[*mesh.own_section].simplices;
     for (MergedSection& merged : mesh.merged) {
       totals.simplices += mesh.sections[merged.section].simplices;
@@ -150,12 +150,12 @@ class PartFiles : public MeshOutput {
     file.write(spm_trailer(totals));
   }
 
-  void write_whole(const MeshTotals& totals, const std::vector<IdRun>& ids,
+  void write_whole(const MeshTotals& totals, const std::vector<IdRange>& ids,
                    bool colours_are_bytes) {
     MeshFiles files;
     files.format = target_.format;
     files.main = std::make_unique<HeldOutput>(*file_, bytes_);
-    MeshHeader header = header_of_mesh(spool_.header(), totals);
+    MeshFileHeader header = header_of_mesh(spool_.header(), totals);
     header.global_ids = ids;
     header.colours_are_bytes = colours_are_bytes;
     const std::unique_ptr<MeshWriter> writer = open_mesh_writer(std::move(files), header);
@@ -178,4 +178,4 @@ std::unique_ptr<MeshOutput> open_part_files(FileSystem& files, const MeshTarget&
   return std::make_unique<PartFiles>(files, target, header, scratch, ranks);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -7,7 +7,7 @@
 #include "src/runtime/packing.h"
 #include "stream/ranks/exchange/collective_step.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 using distributed::Reduction;
 
@@ -103,4 +103,4 @@ void RankCheckpoints::save_alone(const std::function<void(StateWriter&)>& write)
   pace_.save(named(write));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

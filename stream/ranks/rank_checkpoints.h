@@ -8,7 +8,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/checkpoint/checkpoints.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The checkpoints of a run over ranks, each in a folder of its own. While ranks depend on each
 /// other they make one together: it has a number, and is of use only if all ranks have it. What a
@@ -61,4 +61,4 @@ class RankCheckpoints {
   bool lacked_some_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

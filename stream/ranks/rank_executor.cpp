@@ -20,7 +20,7 @@
 #include "stream/ranks/share_messages.h"
 #include "stream/ranks/shared_report.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 class RankExecutor final : public Executor {
@@ -29,14 +29,14 @@ class RankExecutor final : public Executor {
 
   [[nodiscard]] bool is_first() const override { return ranks_.rank() == 0; }
 
-  std::unique_ptr<detail::PointSource> open_points(const Context& context,
-                                                   const std::vector<std::string>& paths,
-                                                   PointSourceOptions options) override {
+  std::unique_ptr<stream::JoinedInputs> open_points(const Context& context,
+                                                    const std::vector<std::string>& paths,
+                                                    JoinedInputsOptions options) override {
     // The first rank looks for the files.
     return open_shared_source(
         context.state().files(),
-        is_first() ? spillway::expand_inputs(paths, context) : std::vector<std::string>(),
-        std::move(options), ranks_);
+        is_first() ? expand_inputs(paths, context) : std::vector<std::string>(), std::move(options),
+        ranks_);
   }
 
   Report triangulate(Run& run) override {
@@ -44,7 +44,7 @@ class RankExecutor final : public Executor {
     if (trace != nullptr && (trace->takes_nodes() || trace->takes_steps())) {
       throw InvalidArgument("the tasks of a run over ranks are told as sums only");
     }
-    detail::PointSource* const source = run.points.files;
+    stream::JoinedInputs* const source = run.points.files;
     if (source == nullptr) {
       throw InvalidArgument("ranks share points of files, and these are of a program");
     }
@@ -55,20 +55,20 @@ class RankExecutor final : public Executor {
     ResumableShare share(run, ranks_);
     try {
       return share.complete(make_output(run, *source, &share.checkpoints()));
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       share.tell_how_to_go_on(error);
       throw;
     }
   }
 
  private:
-  Report make_output(Run& run, detail::PointSource& source, RankCheckpoints* checkpoints) const {
+  Report make_output(Run& run, stream::JoinedInputs& source, RankCheckpoints* checkpoints) const {
     const MeshTarget* const target = run.sink.as_mesh_file();
     return target != nullptr ? write_mesh(run, source, *target, checkpoints)
                              : combine_shares(run, source, checkpoints);
   }
 
-  RankMesh triangulate(Run& run, detail::PointSource& source, BlockSink& blocks,
+  RankMesh triangulate(Run& run, stream::JoinedInputs& source, BlockSink& blocks,
                        RankCheckpoints* checkpoints) const {
     const auto triangulate_shared =
         run.engine.asked.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
@@ -76,7 +76,7 @@ class RankExecutor final : public Executor {
   }
 
   /// The first rank tells what others found in the inputs.
-  void tell_notices(const Run& run, const detail::PointSource& source) const {
+  void tell_notices(const Run& run, const stream::JoinedInputs& source) const {
     Packer own;
     own.put(std::uint64_t{source.untold().size()});
     for (const std::string& notice : source.untold()) own.put_list(notice);
@@ -90,7 +90,7 @@ class RankExecutor final : public Executor {
     }
   }
 
-  Report report(const Run& run, const detail::PointSource& source, const RankMesh& mesh) const {
+  Report report(const Run& run, const stream::JoinedInputs& source, const RankMesh& mesh) const {
     tell_notices(run, source);
     Report report = shared_report(mesh, source.counts(), ranks_);
     const RunSums sums = shared_sums(mesh, ranks_);
@@ -102,7 +102,7 @@ class RankExecutor final : public Executor {
     return report;
   }
 
-  Report write_mesh(Run& run, detail::PointSource& source, const MeshTarget& target,
+  Report write_mesh(Run& run, stream::JoinedInputs& source, const MeshTarget& target,
                     RankCheckpoints* checkpoints) const {
     const auto output = open_mesh_output(disk(), target, run.start().header, *run.scratch, ranks_);
     RankMesh mesh = triangulate(run, source, output->writer(), checkpoints);
@@ -114,7 +114,8 @@ class RankExecutor final : public Executor {
     return report;
   }
 
-  Report combine_shares(Run& run, detail::PointSource& source, RankCheckpoints* checkpoints) const {
+  Report combine_shares(Run& run, stream::JoinedInputs& source,
+                        RankCheckpoints* checkpoints) const {
     EngineSink& sink = run.sink;
     MeshStart start = run.start();
     if (checkpoints != nullptr) start.scratch = run.scratch.get();
@@ -143,7 +144,7 @@ class RankExecutor final : public Executor {
   }
 
   /// For a sink that cannot go on in the midst of the blocks: it gets them when all are there.
-  RankMesh triangulate_by_way_of_mesh(Run& run, detail::PointSource& source, BlockSink& blocks,
+  RankMesh triangulate_by_way_of_mesh(Run& run, stream::JoinedInputs& source, BlockSink& blocks,
                                       RankCheckpoints& checkpoints) const {
     const MeshStreamHeader header = run.start().header;
     MeshSpool spool(header, run.points.name, *run.scratch);
@@ -167,4 +168,4 @@ std::shared_ptr<Executor> make_rank_executor(const distributed::Ranks& ranks) {
   return std::make_shared<RankExecutor>(ranks);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -22,7 +22,7 @@
 #include "stream/ranks/rank_tree.h"
 #include "stream/run_phases.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 using distributed::Ranks;
@@ -44,7 +44,7 @@ constexpr std::uint64_t kMergedBytes = 300;
 template <int D>
 class RankRun final : public RunPhases<D> {
  public:
-  RankRun(PointSource& points, BlockSink& blocks, const RunSetup& with, const Ranks& ranks,
+  RankRun(JoinedInputs& points, BlockSink& blocks, const RunSetup& with, const Ranks& ranks,
           RankCheckpoints* checkpoints)
       : RunPhases<D>(points, share_of(points, with.options, ranks), blocks, with),
         source_(points),
@@ -75,7 +75,7 @@ class RankRun final : public RunPhases<D> {
   }
 
   /// What is expected of one rank's points.
-  [[nodiscard]] static ExpectedPoints share_of(const PointSource& points,
+  [[nodiscard]] static ExpectedPoints share_of(const JoinedInputs& points,
                                                const EngineOptions& options, const Ranks& ranks) {
     ExpectedPoints share{.lattice = points.lattice(), .ordered_by_index = is_indexed(options)};
     if (points.expected())
@@ -283,14 +283,14 @@ class RankRun final : public RunPhases<D> {
       }
     }
     merges.run(std::move(border));
-    result_.merges = merges.take_figures();
+    result_.merges = merges.take_statistics();
     drafts_ = merges.take_sections();
   }
 
   /// Puts together what all ranks have: the sections of the stream, and the totals.
   void collect() {
     result_.task_sums = engine().task_sums();
-    result_.figures = engine().figures();
+    result_.statistics = engine().statistics();
     number_sections();
     for (SectionDraft& draft : drafts_) {
       MergedSection& merged = result_.merged.emplace_back(std::move(draft.section));
@@ -300,11 +300,11 @@ class RankRun final : public RunPhases<D> {
       }
     }
     MeshTotals& totals = result_.totals;
-    totals = result_.figures.mesh;
+    totals = result_.statistics.mesh;
     for (const MergedSection& merged : result_.merged)
       totals.canonical_hash += merged.canonical_hash;
     std::vector<std::uint64_t> sums = {totals.points, totals.duplicates, totals.canonical_hash,
-                                       totals.hull_facets, result_.figures.left_out};
+                                       totals.hull_facets, result_.statistics.left_out};
     ranks_.reduce(sums, Reduction::kSum);
     totals = {.points = sums[0], .duplicates = sums[1], .canonical_hash = sums[2]};
     totals.hull_facets = options_.asked.max_edge ? open_facets() : sums[3];
@@ -321,11 +321,11 @@ class RankRun final : public RunPhases<D> {
     if (const auto own = tree.own_node()) {
       const std::size_t section = tree.nodes()[*own].first_section;
       result_.own_section = tree.nodes()[*own].first_section;
-      sizes[2 * section] = result_.figures.mesh.vertices;
-      sizes[2 * section + 1] = result_.figures.mesh.simplices;
+      sizes[2 * section] = result_.statistics.mesh.vertices;
+      sizes[2 * section + 1] = result_.statistics.mesh.simplices;
     }
     for (const SectionDraft& draft : drafts_) {
-      const MeshBlock& mesh = draft.section.mesh;
+      const MeshStreamBlock& mesh = draft.section.mesh;
       const std::size_t section = draft.section.section;
       sizes[2 * section] = mesh.vertices.size();
       sizes[2 * section + 1] = mesh.corners.size() / (D + 1);
@@ -349,10 +349,10 @@ class RankRun final : public RunPhases<D> {
     distributed::ItemsByRank<std::array<std::uint64_t, D>> facets;
     for (const auto& facet : own_open_facets()) {
       const auto ranks = static_cast<std::uint64_t>(ranks_.size());
-      facets[static_cast<int>(OpenFacets<D>::hash(facet) % ranks)].push_back(facet);
+      facets[static_cast<int>(UnpairedFacets<D>::hash(facet) % ranks)].push_back(facet);
     }
     ShrinkingLease received(budget_);
-    OpenFacets<D> met;
+    UnpairedFacets<D> met;
     for (const auto& [rank, some] : distributed::exchange_items(
              ranks_, std::move(facets),
              {.largest_message = largest_message(budget_, ranks_), .received = &received})) {
@@ -362,8 +362,8 @@ class RankRun final : public RunPhases<D> {
   }
 
   /// Those of this rank alone, in numbers of the whole stream.
-  [[nodiscard]] OpenFacets<D> own_open_facets() const {
-    OpenFacets<D> own;
+  [[nodiscard]] UnpairedFacets<D> own_open_facets() const {
+    UnpairedFacets<D> own;
     if (result_.own_section) {
       const std::uint64_t first = result_.sections[*result_.own_section].first_vertex;
       for (auto facet : engine().open_facets()) {
@@ -378,7 +378,7 @@ class RankRun final : public RunPhases<D> {
     return own;
   }
 
-  PointSource& source_;
+  JoinedInputs& source_;
   BlockSink& blocks_;
   const EngineOptions& options_;
   MemoryBudget& budget_;
@@ -399,25 +399,25 @@ class RankRun final : public RunPhases<D> {
 }  // namespace
 
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, BlockSink& blocks, const RunSetup& setup,
+RankMesh triangulate_over_ranks(JoinedInputs& source, BlockSink& blocks, const RunSetup& setup,
                                 const Ranks& ranks, RankCheckpoints* checkpoints) {
   return RankRun<D>(source, blocks, setup, ranks, checkpoints).run();
 }
 
-template RankMesh triangulate_over_ranks<2>(PointSource&, BlockSink&, const RunSetup&, const Ranks&,
-                                            RankCheckpoints*);
-template RankMesh triangulate_over_ranks<3>(PointSource&, BlockSink&, const RunSetup&, const Ranks&,
-                                            RankCheckpoints*);
+template RankMesh triangulate_over_ranks<2>(JoinedInputs&, BlockSink&, const RunSetup&,
+                                            const Ranks&, RankCheckpoints*);
+template RankMesh triangulate_over_ranks<3>(JoinedInputs&, BlockSink&, const RunSetup&,
+                                            const Ranks&, RankCheckpoints*);
 
-std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
-                                                PointSourceOptions options, const Ranks& ranks) {
+std::unique_ptr<JoinedInputs> open_shared_source(FileSystem& files, std::vector<std::string> paths,
+                                                 JoinedInputsOptions options, const Ranks& ranks) {
   options.index = true;
   options.digests = true;
   options.viewer = fmt::format("rank {}", ranks.rank());
-  std::unique_ptr<PointSource> source;
+  std::unique_ptr<JoinedInputs> source;
   Packer packer;
   if (ranks.rank() == 0) {
-    source = std::make_unique<PointSource>(files, paths, options);
+    source = std::make_unique<JoinedInputs>(files, paths, options);
     packer.put(std::uint64_t{source->paths().size()});
     for (const std::string& path : source->paths()) packer.put_list(path);
     pack(packer, source->facts());
@@ -428,7 +428,7 @@ std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<s
   Unpacker unpacker(bytes);
   paths.resize(unpacker.take<std::uint64_t>());
   for (std::string& path : paths) path = unpacker.take_list<std::string>();
-  return std::make_unique<PointSource>(files, paths, options, unpack_source_facts(unpacker));
+  return std::make_unique<JoinedInputs>(files, paths, options, unpack_source_facts(unpacker));
 }
 
 PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
@@ -448,4 +448,4 @@ PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
   return all;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

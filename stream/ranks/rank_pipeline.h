@@ -12,9 +12,9 @@
 #include "stream/plan/run_setup.h"
 #include "stream/plan/run_trace.h"
 #include "stream/ranks/rank_checkpoints.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// A section of the stream that all ranks make together: what the tiles of one rank gave, or a
 /// step of a merge between ranks at one of them. Sections follow each other as tiles and merges do
@@ -30,7 +30,7 @@ struct StreamSection {
 /// What this rank gives in a step of a merge between ranks: the one block of a section.
 struct MergedSection {
   std::uint32_t section = 0;                    ///< of RankMesh::sections
-  MeshBlock mesh;                               ///< `imported` are numbers in the whole stream
+  MeshStreamBlock mesh;                         ///< `imported` are numbers in the whole stream
   std::vector<LatticePoint> imported_vertices;  ///< the same vertices, like the mesh's own
   std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
   std::vector<std::byte> imported_attributes;   ///< likewise
@@ -44,7 +44,7 @@ struct RankMesh {
   std::vector<StreamSection> sections;       ///< likewise, in the order of the stream
   std::optional<std::uint32_t> own_section;  ///< what the local sink was given, from number 0 on
   std::vector<MergedSection> merged;         ///< by this rank, in the order of the stream
-  RunFigures figures;                        ///< of this rank alone
+  RunStatistics statistics;                  ///< of this rank alone
   std::vector<TaskSum> task_sums;            ///< likewise
   std::vector<RankMerge> merges;             ///< of this rank
   std::uint64_t exchanged_points = 0;        ///< that it sent to other ranks
@@ -59,17 +59,17 @@ struct RankMesh {
 /// finished yet; the setup is that of the rank. Collective. Errors that all ranks
 /// share are thrown by rank 0, while the others wait to be ended.
 template <int D>
-RankMesh triangulate_over_ranks(PointSource& source, BlockSink& blocks, const RunSetup& setup,
+RankMesh triangulate_over_ranks(JoinedInputs& source, BlockSink& blocks, const RunSetup& setup,
                                 const distributed::Ranks& ranks,
                                 RankCheckpoints* checkpoints = nullptr);
 
 /// The inputs, looked at by rank 0 alone, as a source for triangulate_over_ranks(), points with
 /// their index; only rank 0's `paths` count. Collective.
-std::unique_ptr<PointSource> open_shared_source(FileSystem& files, std::vector<std::string> paths,
-                                                PointSourceOptions options,
-                                                const distributed::Ranks& ranks);
+std::unique_ptr<JoinedInputs> open_shared_source(FileSystem& files, std::vector<std::string> paths,
+                                                 JoinedInputsOptions options,
+                                                 const distributed::Ranks& ranks);
 
 /// The sums over all ranks. Collective.
 PointCounts shared_counts(const PointCounts& own, const distributed::Ranks& ranks);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -5,7 +5,7 @@
 
 #include "stream/ranks/exchange/messages.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 template <int D>
 RankTree<D>::RankTree(const RankDivision& division, const std::optional<TileNode<D>>& own,
@@ -77,4 +77,4 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
 template class RankTree<2>;
 template class RankTree<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

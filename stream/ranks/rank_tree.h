@@ -10,7 +10,7 @@
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/tile_triangulation.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The sections of a merge between ranks come in this order, in each step those of all its members.
 enum class MergeStep : std::uint8_t {
@@ -88,4 +88,4 @@ class RankTree {
   std::optional<std::uint32_t> own_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

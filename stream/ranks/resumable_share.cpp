@@ -10,7 +10,7 @@
 #include "stream/library/resumable_run.h"
 #include "stream/ranks/exchange/collective_step.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,10 +46,10 @@ void ResumableShare::make_run_folder() const {
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (name.starts_with(kRankFolder)) continue;
-    throw Error(fmt::format("{} is no folder of a run over ranks: it has {} in it; give another "
-                            "folder",
-                            run_folder_, name),
-                ErrorCode::kInvalidArgument, {.file = run_folder_});
+    throw Failure(fmt::format("{} is no folder of a run over ranks: it has {} in it; give another "
+                              "folder",
+                              run_folder_, name),
+                  ErrorCode::kInvalidArgument, {.file = run_folder_});
   }
   if (error) {
     throw SystemRefusal(fmt::format("cannot use {} as a folder: {}", run_folder_, error.message()),
@@ -81,11 +81,11 @@ void ResumableShare::tell() const {
 }
 
 /// Only the first rank warns, so the error itself tells it.
-void ResumableShare::tell_how_to_go_on(const Error& error) const {
+void ResumableShare::tell_how_to_go_on(const Failure& error) const {
   if (error.code() != ErrorCode::kInputOutput || !folder_->has_checkpoint()) return;
-  throw Error(fmt::format("{}; when that is mended, the same run goes on from what is in {}",
-                          error.what(), run_folder_),
-              error.code(), error.facts());
+  throw Failure(fmt::format("{}; when that is mended, the same run goes on from what is in {}",
+                            error.what(), run_folder_),
+                error.code(), error.facts());
 }
 
 /// Ranks whose folder is gone begin again, so none is removed before all outputs have their names.
@@ -103,4 +103,4 @@ Report ResumableShare::complete(Report report) {
   return report;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

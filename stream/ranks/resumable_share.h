@@ -11,21 +11,21 @@
 #include "stream/library/run.h"
 #include "stream/ranks/rank_checkpoints.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The part of one rank in a run that can go on, with a folder of its own in that of the run:
 /// "rank-0", "rank-1", ...
 class ResumableShare {
  public:
   /// Takes the folder, and puts the run's scratch files and unfinished outputs where they outlive
-  /// the process. Collective. Throws Error as CheckpointFolder, and if the run's folder has
+  /// the process. Collective. Throws Failure as CheckpointFolder, and if the run's folder has
   /// something else in it.
   ResumableShare(Run& run, const distributed::Ranks& ranks);
 
   [[nodiscard]] RankCheckpoints& checkpoints() { return *checkpoints_; }
 
   /// Throws the error again with what to do, if the run can go on when what it tells is mended.
-  void tell_how_to_go_on(const Error& error) const;
+  void tell_how_to_go_on(const Failure& error) const;
 
   /// Removes the folders, as the output is complete, and returns the report. Collective.
   Report complete(Report report);
@@ -44,4 +44,4 @@ class ResumableShare {
   std::optional<RankCheckpoints> checkpoints_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

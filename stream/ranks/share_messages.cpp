@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 /// Of the messages that rank 0 has at a time, of all ranks together.
@@ -36,4 +36,4 @@ void SharesOfOtherRanks::end() {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -9,7 +9,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/sinks/mesh_shares.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// From this rank to rank 0.
 class ShareToFirstRank final : public ShareSender {
@@ -42,4 +42,4 @@ class SharesOfOtherRanks final : public OtherShares {
   std::vector<bool> has_ended_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -16,7 +16,7 @@
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/stream_sections.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 using distributed::Ranks;
@@ -101,7 +101,7 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   std::uint64_t write_records(RankMesh& mesh) {
-    const MeshHeader header = header_of_file(mesh);
+    const MeshFileHeader header = header_of_file(mesh);
     vertex_size_ = records().vertex_size(header);
     attributes_.emplace(records().attributes(header, target_.path));
     std::vector<std::byte> head;
@@ -145,20 +145,20 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   /// Collective.
-  MeshHeader header_of_file(const RankMesh& mesh) const {
+  MeshFileHeader header_of_file(const RankMesh& mesh) const {
     ColourDepth of_merges(spool_.header().attributes);
     for (const MergedSection& merged : mesh.merged) of_merges.add(merged.mesh.attributes);
     const bool are_bytes = spool_.colours_are_bytes() && of_merges.is_bytes();
     std::uint64_t exceed = are_bytes ? 0 : 1;
     ranks_.reduce(std::span(&exceed, 1), Reduction::kMost);
-    MeshHeader header = header_of_mesh(spool_.header(), mesh.totals);
+    MeshFileHeader header = header_of_mesh(spool_.header(), mesh.totals);
     header.colours_are_bytes = exceed == 0;
     return header;
   }
 
   void put_own_blocks(std::uint64_t first_vertex, OffsetOutput& vertices, OffsetOutput& simplices) {
     const std::unique_ptr<MeshStreamReader> reader = spool_.open();
-    MeshBlock block;
+    MeshStreamBlock block;
     std::vector<std::uint64_t> corners;
     std::uint64_t first = 0;
     while (reader->read(block)) {
@@ -171,15 +171,15 @@ class SharedMeshOutput : public MeshOutput {
   }
 
   /// Puts simplices and their corners in the order that they have in spm.
-  void as_spm_gives_it(MeshBlock& block) const {
+  void as_spm_gives_it(MeshStreamBlock& block) const {
     std::vector<std::byte> content;
     append_spm_content(content, spool_.header(), block);
     read_spm_content(content, spool_.header(), {.file = target_.path}, block);
   }
 
   /// Moves the block's vertices to output coordinates.
-  void put_block(MeshBlock& block, std::span<const std::uint64_t> corners, OffsetOutput& vertices,
-                 OffsetOutput& simplices) {
+  void put_block(MeshStreamBlock& block, std::span<const std::uint64_t> corners,
+                 OffsetOutput& vertices, OffsetOutput& simplices) {
     const std::span<const std::byte> attributes =
         attributes_->convert(block.attributes, next_vertex_);
     next_vertex_ += block.vertices.size();
@@ -225,4 +225,4 @@ std::unique_ptr<MeshOutput> open_shared_file(const MeshTarget& target,
                                             temporary_path);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

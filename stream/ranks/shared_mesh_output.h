@@ -5,7 +5,7 @@
 
 #include "stream/ranks/mesh_output.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// One file that all ranks write to: Spillway's own stream, whose sections follow each other, or a
 /// format with records (MeshFormat::records). Rank 0 has created it, at `temporary_path`, and gives
@@ -16,4 +16,4 @@ std::unique_ptr<MeshOutput> open_shared_file(const MeshTarget& target,
                                              std::unique_ptr<OutputFile> created,
                                              const std::string& temporary_path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

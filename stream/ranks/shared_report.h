@@ -5,7 +5,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// The report of a run over ranks, of whose points this rank has counted some: sums over all of
 /// them, and the longest time for phases. Collective.
@@ -15,4 +15,4 @@ Report shared_report(const RankMesh& mesh, const PointCounts& counts,
 /// At rank 0: what each of them has done. Collective.
 RunSums shared_sums(const RankMesh& mesh, const distributed::Ranks& ranks);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

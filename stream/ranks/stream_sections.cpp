@@ -5,7 +5,7 @@
 
 #include "formats/meshes/spm/spm_encoding.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 StreamSections::StreamSections(const MeshSpool& spool, RankMesh& mesh)
     : own_section_(mesh.own_section), sections_(mesh.sections.size()) {
@@ -47,4 +47,4 @@ bool StreamSections::next(std::uint32_t section, std::vector<std::byte>& chunk) 
   return !chunk.empty();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

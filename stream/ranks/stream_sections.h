@@ -11,7 +11,7 @@
 #include "src/distributed/ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// About how many bytes of output go to a file or to another rank at a time.
 inline constexpr std::size_t kOutputChunk = std::size_t{4} << 20;
@@ -45,4 +45,4 @@ class StreamSections {
   std::size_t sections_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -6,11 +6,11 @@
 
 #include "src/runtime/packing.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What a message holds: its first byte.
-enum class Content : std::uint8_t { kFigures, kWholeLines, kOpenLines };
+enum class Content : std::uint8_t { kStatistics, kWholeLines, kOpenLines };
 
 Packer message_of(Content content) {
   Packer message;
@@ -45,12 +45,12 @@ void take_open_lines(std::span<const std::byte> bytes, LineJoiner& joiner) {
 }  // namespace
 
 void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender) {
-  Packer figures = message_of(Content::kFigures);
-  figures.put(ContourFigures{.lowest = writer.lowest(),
-                             .highest = writer.highest(),
-                             .lines = writer.lines(),
-                             .spilled_bytes = writer.spilled_bytes() + lines.stored_bytes()});
-  sender.send(figures.bytes());
+  Packer statistics = message_of(Content::kStatistics);
+  statistics.put(ContourStatistics{.lowest = writer.lowest(),
+                                   .highest = writer.highest(),
+                                   .lines = writer.lines(),
+                                   .spilled_bytes = writer.spilled_bytes() + lines.stored_bytes()});
+  sender.send(statistics.bytes());
   for (auto some = lines.take(); !some.empty(); some = lines.take()) {
     std::vector<std::byte> message(1 + some.size());
     message.front() = static_cast<std::byte>(Content::kWholeLines);
@@ -61,13 +61,13 @@ void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender)
 }
 
 void take_contours(ContourWriter& writer, OtherShares& others, const ContourWriter::Sink& take_line,
-                   const std::function<void(const ContourFigures&)>& take_figures) {
+                   const std::function<void(const ContourStatistics&)>& take_statistics) {
   for (std::size_t other = 0; other < others.count(); ++other) {
     while (const std::optional<std::vector<std::byte>> message = others.next(other)) {
       const auto bytes = std::span(*message).subspan(1);
       switch (static_cast<Content>(message->front())) {
-        case Content::kFigures:
-          take_figures(Unpacker(bytes).take<ContourFigures>());
+        case Content::kStatistics:
+          take_statistics(Unpacker(bytes).take<ContourStatistics>());
           break;
         case Content::kWholeLines:
           LineStore::for_each(bytes, take_line);
@@ -80,4 +80,4 @@ void take_contours(ContourWriter& writer, OtherShares& others, const ContourWrit
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,10 +10,10 @@
 #include "stream/sinks/line_store.h"
 #include "stream/sinks/mesh_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What of a process' contours is more than lines.
-struct ContourFigures {
+struct ContourStatistics {
   double lowest = 0;
   double highest = 0;
   std::uint64_t lines = 0;  ///< whole ones
@@ -24,8 +24,8 @@ struct ContourFigures {
 void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender);
 
 /// Takes all that others give: their whole lines go to `take_line`, the open ones to the writer,
-/// the figures, one of each, to `take_figures`.
+/// the statistics, one of each, to `take_statistics`.
 void take_contours(ContourWriter& writer, OtherShares& others, const ContourWriter::Sink& take_line,
-                   const std::function<void(const ContourFigures&)>& take_figures);
+                   const std::function<void(const ContourStatistics&)>& take_statistics);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

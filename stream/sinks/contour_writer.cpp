@@ -6,9 +6,9 @@
 
 #include "src/geometry/longest_edge.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-ContourWriter::ContourWriter(ContourOptions options, Sink sink, ScratchFolder& scratch)
+ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch)
     : options_(std::move(options)),
       joiner_(
           [this, sink = std::move(sink)](std::span<const Point<2>> points, std::int64_t level) {
@@ -52,7 +52,7 @@ void ContourWriter::draw(const StreamNumbers& numbers, std::span<const WorldPoin
   }
 }
 
-void ContourWriter::write(MeshBlock&& block) {
+void ContourWriter::write(MeshStreamBlock&& block) {
   std::vector<WorldPoint> vertices = in_output(block.vertices);
   take_heights(vertices);
   live_.append_imported(block, vertices);
@@ -74,4 +74,4 @@ void ContourWriter::take_merged(const MergedBlock& block) {
 
 void ContourWriter::finish(const MeshTotals& /*totals*/) { joiner_.finish(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -15,11 +15,11 @@
 #include "stream/sinks/line_joiner.h"
 #include "stream/sinks/mesh_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-struct ContourOptions {
+struct ContourSinkOptions {
   Levels levels = Levels::every(1, 0);
-  std::optional<Lattice> lattice;    ///< of the vertices to come
+  std::optional<IntegerLattice> lattice;  ///< of the vertices to come
   std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
   std::uint64_t memory = 0;          ///< bytes for points of lines that are still open
 };
@@ -31,9 +31,9 @@ class ContourWriter : public BlockSink {
   /// Receives each whole line, in output coordinates.
   using Sink = std::function<void(std::span<const Point<2>> points, double height)>;
 
-  ContourWriter(ContourOptions options, Sink sink, ScratchFolder& scratch);
+  ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch);
 
-  void write(MeshBlock&& block) override;
+  void write(MeshStreamBlock&& block) override;
   void finish(const MeshTotals& totals) override;
 
   /// Where several processes draw the lines of one mesh: the number in it of the first vertex that
@@ -58,7 +58,7 @@ class ContourWriter : public BlockSink {
   void draw(const StreamNumbers& numbers, std::span<const WorldPoint> vertices,
             std::span<const std::uint32_t> corners);
 
-  const ContourOptions options_;
+  const ContourSinkOptions options_;
   LineJoiner joiner_;
   std::vector<IsoSegment> segments_;
   StreamVertices<WorldPoint> live_;
@@ -67,4 +67,4 @@ class ContourWriter : public BlockSink {
   std::uint64_t left_out_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

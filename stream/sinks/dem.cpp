@@ -17,7 +17,7 @@
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 static_assert(RasterStore::kSide == kRasterTile, "tiles are written as they are kept");
@@ -98,7 +98,8 @@ struct Dem::Work {
   std::vector<float> values;  ///< of the triangle, by product; those that vary in it unused
 };
 
-Dem::Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch)
+Dem::Dem(DemSinkOptions options, const std::optional<IntegerLattice>& lattice,
+         ScratchFolder& scratch)
     : options_(std::move(options)),
       lattice_(lattice),
       on_lattice_(lattice && lattice->scale[0] > 0 && lattice->scale[1] > 0),
@@ -429,4 +430,4 @@ void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>&
   run_pipeline(slots, source, steps);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -22,9 +22,9 @@
 #include "src/terrain/pixel_values.h"
 #include "stream/sinks/raster_store.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-struct DemOptions {
+struct DemSinkOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
   GridRequest grid{};
   Light light{};
@@ -46,7 +46,7 @@ struct DemOptions {
 class Dem {
  public:
   /// `lattice` is that of the vertices to come. Throws InvalidArgument if the memory is too small.
-  Dem(DemOptions options, const std::optional<Lattice>& lattice, ScratchFolder& scratch);
+  Dem(DemSinkOptions options, const std::optional<IntegerLattice>& lattice, ScratchFolder& scratch);
 
   /// Lays the grid, given the box around all vertices (as they come, on the lattice if there is
   /// one). To be called before what follows; called again, what was painted is forgotten. Throws
@@ -117,8 +117,8 @@ class Dem {
   [[nodiscard]] TileSize size_of_tile(std::uint64_t number) const;
   [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
 
-  const DemOptions options_;
-  const std::optional<Lattice> lattice_;
+  const DemSinkOptions options_;
+  const std::optional<IntegerLattice> lattice_;
   const bool on_lattice_;  ///< triangles are painted on it
   const Point<3> light_direction_;
   ScratchFolder& scratch_;
@@ -131,4 +131,4 @@ class Dem {
   std::atomic<std::uint64_t> left_out_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 
 #include "src/runtime/packing.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The tiles that come from one process, in ascending order.
@@ -65,4 +65,4 @@ void write_with_others(Dem& dem, OtherShares& others, Raster& raster,
   });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

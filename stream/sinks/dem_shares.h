@@ -8,7 +8,7 @@
 #include "stream/sinks/dem.h"
 #include "stream/sinks/mesh_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Gives away all that has been painted, tile by tile in ascending order.
 void give_tiles(Dem& dem, ShareSender& sender);
@@ -17,4 +17,4 @@ void give_tiles(Dem& dem, ShareSender& sender);
 void write_with_others(Dem& dem, OtherShares& others, Raster& raster,
                        const std::function<void(std::uint64_t pixels)>& progress);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

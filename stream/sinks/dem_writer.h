@@ -8,7 +8,7 @@
 #include "stream/sinks/dem.h"
 #include "stream/sinks/simplex_sink.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Paints a mesh of triangles as its blocks come, into a Dem that all threads share.
 class DemWriter final : public SimplexSink<PlacedPoint> {
@@ -39,4 +39,4 @@ class DemWriter final : public SimplexSink<PlacedPoint> {
   Dem& dem_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Fewer points of a line than these are not worth a place on the disk.
@@ -178,7 +178,7 @@ void LineJoiner::append(std::vector<Point<2>>& points, const Point<2>& point) {
 
 void LineJoiner::enter(OpenEnds& ends, const Crossing& crossing, Number number) {
   if (ends.emplace(crossing, number).second) return;
-  throw Error(
+  throw Failure(
       fmt::format("the triangles at the edge from vertex {} to {} do not fit together: check "
                   "the mesh",
                   crossing.edge[0], crossing.edge[1]));
@@ -295,4 +295,4 @@ void LineJoiner::give_out(Line&& line) {
   sink_(points, level);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

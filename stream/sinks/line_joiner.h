@@ -11,7 +11,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "src/terrain/isolines.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 struct CrossingHash {
   std::size_t operator()(const Crossing& crossing) const;
@@ -31,7 +31,7 @@ class LineJoiner {
   /// `memory`: bytes for points of open lines. `scratch` must outlive it.
   LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch);
 
-  /// Throws Error if the segment's triangle does not fit to those before it.
+  /// Throws Failure if the segment's triangle does not fit to those before it.
   void add(const IsoSegment& segment);
 
   /// A part of a line that may still grow at both ends.
@@ -40,7 +40,7 @@ class LineJoiner {
     Crossing end;
     std::vector<Point<2>> points;
   };
-  /// What another joiner has joined. Throws Error likewise.
+  /// What another joiner has joined. Throws Failure likewise.
   void add(OpenLine&& part);
   /// Hands over all that is open, for another joiner.
   void hand_over(const std::function<void(const OpenLine&)>& take);
@@ -103,4 +103,4 @@ class LineJoiner {
   std::uint64_t lines_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

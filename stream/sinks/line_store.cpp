@@ -1,6 +1,6 @@
 #include "stream/sinks/line_store.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Bytes that go to the disk at a time.
@@ -26,4 +26,4 @@ std::vector<std::byte> LineStore::take() {
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/geometry/point.h"
 #include "src/runtime/packing.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Whole lines of contours that wait on the disk until they are asked for.
 class LineStore {
@@ -47,4 +47,4 @@ class LineStore {
   Packer last_;                 ///< what is not in the file
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,13 +10,13 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What a merge between processes made final: a block that comes by itself, with the vertices that
 /// it imports.
 struct MergedBlock {
   std::uint64_t first_vertex = 0;  ///< the number of its first new vertex in the whole mesh
-  const MeshBlock& mesh;           ///< imports by numbers in the whole mesh
+  const MeshStreamBlock& mesh;     ///< imports by numbers in the whole mesh
   std::span<const LatticePoint> imported_vertices;
 };
 
@@ -47,4 +47,4 @@ class NoOtherShares final : public OtherShares {
   std::optional<std::vector<std::byte>> next(std::size_t /*other*/) override { return {}; }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -16,7 +16,7 @@
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 // Spilled pixels are a block (docs/formats-blocks.md) of this kind: the number of runs; of each,
@@ -399,4 +399,4 @@ std::uint64_t RasterStore::spilled_bytes() const {
   return file_ ? file_->size() : 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -18,10 +18,12 @@
 #include "formats/disk/scratch_folder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
-
+namespace spillway::formats {
 class StateReader;
 class StateWriter;
+}  // namespace spillway::formats
+
+namespace spillway::stream {
 
 /// What is in a pixel of one band. Nothing is not-a-number. All else is put there by put_pixel(),
 /// and what comes out in the end does not depend on the order.
@@ -185,4 +187,4 @@ class RasterStore {
   std::shared_ptr<ScratchFile> file_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

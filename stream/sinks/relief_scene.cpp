@@ -14,7 +14,7 @@
 #include "stream/sinks/dem_writer.h"
 #include "stream/sinks/scene.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr Colour kLineColour = {0.07F, 0.09F, 0.13F};
@@ -58,8 +58,8 @@ class ReliefScene : public Scene {
   void extent_known(const Box<2>& extent) override {
     const Box<2> box = options_.zoom ? plane_box(*options_.zoom) : dem_.in_output(extent);
     if (!(std::max(box.extent(0), box.extent(1)) > 0)) {
-      throw Error("all vertices have the same x and y: there is no relief to draw",
-                  ErrorCode::kDegenerateInput);
+      throw Failure("all vertices have the same x and y: there is no relief to draw",
+                    ErrorCode::kDegenerateInput);
     }
     frame_ = frame_around(box, options_.size, options_.zoom ? 0 : kMargin);
     PixelGrid samples = frame_;
@@ -75,9 +75,9 @@ class ReliefScene : public Scene {
     SampleTiles tiles(dem_.grid(), heights);
     dem_.write(tiles, [](std::uint64_t) {});
     if (heights.empty()) {
-      throw Error(options_.zoom ? "nothing is seen: the zoom lies beside all triangles"
-                                : "nothing is seen: no triangle has an area",
-                  ErrorCode::kDegenerateInput);
+      throw Failure(options_.zoom ? "nothing is seen: the zoom lies beside all triangles"
+                                  : "nothing is seen: no triangle has an area",
+                    ErrorCode::kDegenerateInput);
     }
     Relief relief = draw_relief(
         heights, {.pixel_side = frame_.resolution, .exaggeration = options_.exaggeration});
@@ -93,8 +93,8 @@ class ReliefScene : public Scene {
   [[nodiscard]] std::uint64_t left_out() const override { return dem_.left_out(); }
 
  private:
-  DemOptions dem_options(const SceneMesh& mesh, std::uint64_t memory, unsigned threads) {
-    DemOptions options;
+  DemSinkOptions dem_options(const SceneMesh& mesh, std::uint64_t memory, unsigned threads) {
+    DemSinkOptions options;
     options.products = {DemProduct::kHeight};
     options.max_edge = mesh.max_edge;
     options.nodata = std::numeric_limits<float>::quiet_NaN();
@@ -141,4 +141,4 @@ std::unique_ptr<Scene> make_relief_scene(const PictureOptions& options, const Sc
   return std::make_unique<ReliefScene>(options, mesh, memory, threads, scratch);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -16,7 +16,7 @@
 #include "src/geometry/lattice.h"
 #include "src/picture/picture.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A picture in the making.
 class Scene {
@@ -47,7 +47,7 @@ class Scene {
 
 /// What is known of a mesh before it is drawn.
 struct SceneMesh {
-  std::optional<Lattice> lattice;
+  std::optional<IntegerLattice> lattice;
   std::optional<double> max_edge;  ///< leave out simplices with a longer edge
 };
 
@@ -75,4 +75,4 @@ inline Box<2> plane_box(const Extent& box) {
   return {{box.low[0], box.low[1]}, {box.high[0], box.high[1]}};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <memory>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-std::vector<std::uint32_t> RestOfBlock::divide(MeshBlock& block, std::size_t corners) {
+std::vector<std::uint32_t> RestOfBlock::divide(MeshStreamBlock& block, std::size_t corners) {
   const auto announced = static_cast<std::uint32_t>(block.vertices.size());
   std::vector<std::uint8_t> is_left(announced, 1);
   for (const std::uint32_t v : block.finalized) {
@@ -55,4 +55,4 @@ std::vector<std::uint32_t> RestOfBlock::divide(MeshBlock& block, std::size_t cor
   return inner;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "formats/meshes/common/stream_vertices.h"
 #include "stream/sinks/mesh_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What write() needs of a block of which those simplices are done that have no imported vertex:
 /// the others, in the block, and their vertices and those that come again.
@@ -17,7 +17,7 @@ class RestOfBlock final : public AbsorbedBlock {
  public:
   /// Leaves the rest in `block`, by short numbers of what is left, and returns the corners of the
   /// simplices that are not: `corners` a simplex, by the short numbers of before.
-  static std::vector<std::uint32_t> divide(MeshBlock& block, std::size_t corners);
+  static std::vector<std::uint32_t> divide(MeshStreamBlock& block, std::size_t corners);
 
   [[nodiscard]] std::uint64_t bytes() const override { return places_.size() * sizeof(places_[0]); }
   /// How many vertices the block announced.
@@ -39,14 +39,14 @@ class SimplexSink : public BlockSink {
  public:
   explicit SimplexSink(int dimension) : corners_(static_cast<std::size_t>(dimension) + 1) {}
 
-  void absorb(MeshBlock& block) final {
+  void absorb(MeshStreamBlock& block) final {
     const std::vector<Value> values = values_of(block.vertices);
     const std::vector<std::uint32_t> corners = RestOfBlock::divide(block, corners_);
     take_vertices(values);
     take_simplices(values, corners);
   }
 
-  void write(MeshBlock&& block) final {
+  void write(MeshStreamBlock&& block) final {
     if (!block.absorbed) absorb(block);
     const auto& rest = static_cast<const RestOfBlock&>(*block.absorbed);
     std::vector<Value> values = values_of(block.vertices);
@@ -94,4 +94,4 @@ class SimplexSink : public BlockSink {
   StreamVertices<Value> live_;  ///< of write() alone
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

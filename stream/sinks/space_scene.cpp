@@ -12,7 +12,7 @@
 #include "stream/sinks/scene.h"
 #include "stream/sinks/tetrahedron_writers.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr Colour kHullColour = {0.66F, 0.76F, 0.84F};
@@ -77,7 +77,8 @@ class PolygonScene : public Scene {
       }
     }
     if (!(std::max(box.extent(0), box.extent(1)) > 0)) {
-      throw Error("nothing is seen: what is to be drawn has no area", ErrorCode::kDegenerateInput);
+      throw Failure("nothing is seen: what is to be drawn has no area",
+                    ErrorCode::kDegenerateInput);
     }
     return frame_around(box, options_.size, kMargin);
   }
@@ -169,9 +170,9 @@ class SliceScene : public PolygonScene {
     const std::vector<CellCut>& cuts = writer_.cuts();
     if (cuts.empty()) {
       const int axis = options().slice->axis;
-      throw Error(fmt::format("the slice cuts no tetrahedron; their {} is from {} to {}",
-                              "xyz"[axis], writer_.extent().lo[axis], writer_.extent().hi[axis]),
-                  ErrorCode::kDegenerateInput);
+      throw Failure(fmt::format("the slice cuts no tetrahedron; their {} is from {} to {}",
+                                "xyz"[axis], writer_.extent().lo[axis], writer_.extent().hi[axis]),
+                    ErrorCode::kDegenerateInput);
     }
     std::vector<float> sizes;
     for (const CellCut& cell : cuts) sizes.push_back(cell.size);
@@ -220,4 +221,4 @@ std::unique_ptr<Scene> make_space_scene(const PictureOptions& options, const Sce
   return std::make_unique<SliceScene>(options, mesh);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "formats/meshes/common/stream_numbers.h"
 #include "src/geometry/longest_edge.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 Point<3> difference(const Point<3>& a, const Point<3>& b) {
@@ -25,7 +25,7 @@ double volume(const std::array<Point<3>, 4>& corners) {
 
 }  // namespace
 
-void TetrahedronWriter::write(MeshBlock&& block) {
+void TetrahedronWriter::write(MeshStreamBlock&& block) {
   const StreamNumbers numbers(live_.announced(), block);
   std::vector<WorldPoint> vertices;
   for (const LatticePoint& vertex : block.vertices) {
@@ -90,4 +90,4 @@ void SliceWriter::add(const std::array<std::uint64_t, 4>& /*numbers*/,
   if (found.count > 0) cuts_.push_back({found, static_cast<float>(std::cbrt(volume(corners)))});
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,9 +12,9 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/picture/tetrahedron_cut.h"
-#include "stream/output/open_facets.h"
+#include "stream/output/unpaired_facets.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Hands out the tetrahedra of a mesh stream with their corners in output coordinates. Of the mesh
 /// only vertices that are still to come again stay in memory.
@@ -22,10 +22,10 @@ class TetrahedronWriter : public BlockSink {
  public:
   /// `lattice` is that of the vertices to come; tetrahedra with an edge longer than `max_edge`, in
   /// output units, are left out.
-  TetrahedronWriter(const std::optional<Lattice>& lattice, std::optional<double> max_edge)
+  TetrahedronWriter(const std::optional<IntegerLattice>& lattice, std::optional<double> max_edge)
       : lattice_(lattice), max_edge_(max_edge) {}
 
-  void write(MeshBlock&& block) override;
+  void write(MeshStreamBlock&& block) override;
   void finish(const MeshTotals& totals) override;
 
   [[nodiscard]] const Box<3>& extent() const { return extent_; }
@@ -39,7 +39,7 @@ class TetrahedronWriter : public BlockSink {
   /// A vertex that comes no more.
   virtual void retire(std::uint64_t number, const WorldPoint& vertex) = 0;
 
-  const std::optional<Lattice> lattice_;
+  const std::optional<IntegerLattice> lattice_;
   const std::optional<double> max_edge_;
   StreamVertices<WorldPoint> live_;
   Box<3> extent_;
@@ -61,7 +61,7 @@ class HullWriter : public TetrahedronWriter {
   void retire(std::uint64_t number, const WorldPoint& vertex) override;
   void forget_inner_vertices();
 
-  OpenFacets<3> open_;
+  UnpairedFacets<3> open_;
   std::unordered_map<std::uint64_t, WorldPoint> retired_;  ///< some of them inner ones
   std::size_t most_retired_ = std::size_t{1} << 16;
 };
@@ -75,7 +75,7 @@ struct CellCut {
 /// Cuts the tetrahedra by a plane, and keeps the cuts.
 class SliceWriter : public TetrahedronWriter {
  public:
-  SliceWriter(const std::optional<Lattice>& lattice, std::optional<double> max_edge,
+  SliceWriter(const std::optional<IntegerLattice>& lattice, std::optional<double> max_edge,
               const Slice& plane)
       : TetrahedronWriter(lattice, max_edge), plane_(plane) {}
 
@@ -90,4 +90,4 @@ class SliceWriter : public TetrahedronWriter {
   std::vector<CellCut> cuts_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 bool same_region(const PointRegion& a, const PointRegion& b) {
@@ -64,4 +64,4 @@ void refuse_changed_input(const SourceFacts::Input& surveyed, const std::string&
                              what));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

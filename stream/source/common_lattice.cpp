@@ -10,7 +10,7 @@
 
 #include "formats/points/point_formats.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The largest integers of a LAS file and of any source, and the largest that a lattice may make of
@@ -49,17 +49,17 @@ std::optional<double> common_step(const std::set<double>& scales) {
 }
 
 /// Brings some axes of all lattices to one scale; false if that cannot be.
-bool join_axes(std::span<const Lattice> lattices, std::span<const double> largest,
+bool join_axes(std::span<const IntegerLattice> lattices, std::span<const double> largest,
                std::span<const int> axes, CommonLattice& common) {
   std::set<double> scales;
-  for (const Lattice& lattice : lattices) {
+  for (const IntegerLattice& lattice : lattices) {
     for (const int k : axes) scales.insert(std::abs(lattice.scale[k]));
   }
   const std::optional<double> step = common_step(scales);
   if (!step) return false;
   for (const int k : axes) {
     double base = lattices.front().offset[k];
-    for (const Lattice& lattice : lattices) base = std::min(base, lattice.offset[k]);
+    for (const IntegerLattice& lattice : lattices) base = std::min(base, lattice.offset[k]);
     common.lattice.scale[k] = *step;
     common.lattice.offset[k] = base;
     for (std::size_t i = 0; i < lattices.size(); ++i) {
@@ -102,8 +102,8 @@ double largest_integer(const PointHeader& header) {
   return std::min(largest, most);
 }
 
-std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
-                                                 std::span<const double> largest) {
+std::optional<CommonLattice> find_common_lattice(std::span<const IntegerLattice> lattices,
+                                                 int dimension, std::span<const double> largest) {
   constexpr std::array kAxes = {0, 1, 2};
   const std::span<const int> axes(kAxes);
   CommonLattice common;
@@ -127,4 +127,4 @@ std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattic
   return common;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// How the integers of one lattice become those of a finer one: integer * factor + shift.
 struct LatticeMap {
@@ -26,7 +26,7 @@ struct LatticeMap {
 
 /// A lattice on which the points of several others lie.
 struct CommonLattice {
-  Lattice lattice;
+  IntegerLattice lattice;
   bool heights = true;           ///< in the plane, false: z stays out, and has the identity map
   std::vector<LatticeMap> maps;  ///< one for each of the others, in their order
 };
@@ -46,7 +46,8 @@ double largest_integer(const PointHeader& header);
 /// a step, or by one unit in its last place, if that is below 1e-3 of a step. The result does not
 /// depend on the order of `lattices`: the scale is theirs where all agree, and the offset is the
 /// least one. With a `dimension` of 0 each axis may have a scale of its own.
-std::optional<CommonLattice> find_common_lattice(std::span<const Lattice> lattices, int dimension,
+std::optional<CommonLattice> find_common_lattice(std::span<const IntegerLattice> lattices,
+                                                 int dimension,
                                                  std::span<const double> largest = {});
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

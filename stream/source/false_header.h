@@ -8,11 +8,11 @@
 #include "src/error.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Headers tell of where points lie what is not so. What has been made by them is void. This is the
 /// error that ends the run, unless that can begin again.
-class FalseHeader : public Error {
+class FalseHeader : public Failure {
  public:
   /// What the points fill in x and y, in the coordinates in which they come, and how many they are.
   struct Extent {
@@ -22,8 +22,8 @@ class FalseHeader : public Error {
 
   /// `finding` says what is false, for a run that begins again. `extent` is given if all points lie
   /// where headers tell, but do not fill that.
-  FalseHeader(const Error& error, std::string finding, std::optional<Extent> extent = {})
-      : Error(error), finding_(std::move(finding)), extent_(extent) {}
+  FalseHeader(const Failure& error, std::string finding, std::optional<Extent> extent = {})
+      : Failure(error), finding_(std::move(finding)), extent_(extent) {}
 
   [[nodiscard]] const std::string& finding() const { return finding_; }
   [[nodiscard]] const std::optional<Extent>& extent() const { return extent_; }
@@ -33,4 +33,4 @@ class FalseHeader : public Error {
   std::optional<Extent> extent_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -13,15 +13,15 @@
 #include "stream/source/changed_input.h"
 #include "stream/source/source_crs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
-/// Throws Error unless the points have what the dimension and the filter need.
+/// Throws Failure unless the points have what the dimension and the filter need.
 void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOptions& options) {
   const PointHeader& header = input.header;
   if (options.dimension == 3 && !input.has_heights()) {
-    throw Error(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
-                {.file = header.name, .remedy = Remedy::kPlane});
+    throw Failure(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
+                  {.file = header.name, .remedy = Remedy::kPlane});
   }
   for (const std::string& name : options.filter.attributes()) {
     if (header.attributes.find(name) != nullptr) continue;
@@ -29,9 +29,9 @@ void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOption
     for (const AttributeField& field : header.attributes.fields()) {
       others += (others.empty() ? "; they have " : ", ") + field.attribute.name;
     }
-    throw Error(fmt::format("{}: the points have no {}, which a filter looks at{}", header.name,
-                            name, others),
-                ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
+    throw Failure(fmt::format("{}: the points have no {}, which a filter looks at{}", header.name,
+                              name, others),
+                  ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
   }
 }
 
@@ -65,7 +65,7 @@ Surveyed survey(FileSystem& files, const std::string& path, const HeaderSurveyOp
 }
 
 /// Whether an error is of the file, and not of how the library was called or of the run.
-bool is_of_file(const Error& error) {
+bool is_of_file(const Failure& error) {
   return error.code() == ErrorCode::kBadInput || error.code() == ErrorCode::kInputOutput;
 }
 
@@ -110,15 +110,15 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
                             const HeaderSurveyOptions& options) {
   HeaderSurvey all;
   Known known;
-  std::vector<Error> faults;
-  std::vector<Error> broken;
+  std::vector<Failure> faults;
+  std::vector<Failure> broken;
   for (const std::string& path : paths) {
     Surveyed one;
     try {
       one = survey(files, path, options);
     } catch (const InvalidArgument&) {
       throw;
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       const bool skipped = options.skip_broken && is_of_file(error);
       (skipped ? broken : faults).push_back(error);
       if (skipped) all.skipped.push_back({path, error.what()});
@@ -126,7 +126,7 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
     }
     try {
       check_points_have(one.input, options);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       faults.push_back(error);
       continue;
     }
@@ -140,7 +140,7 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
     all.paths.push_back(path);
   }
   if (all.paths.empty() && faults.empty()) faults = std::move(broken);
-  if (faults.size() == 1) throw Error(faults.front());
+  if (faults.size() == 1) throw Failure(faults.front());
   if (!faults.empty()) {
     const std::size_t count = faults.size();
     throw ErrorList(fmt::format("{} of {} inputs cannot be read", count, paths.size()),
@@ -151,4 +151,4 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
   return all;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

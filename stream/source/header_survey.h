@@ -14,7 +14,7 @@
 #include "stream/source/point_filter.h"
 #include "stream/source/source_facts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 struct HeaderSurveyOptions {
   int dimension = 2;  ///< 0: any
@@ -41,10 +41,10 @@ struct HeaderSurvey {
 std::string notice_of_input(const std::string& name, std::string_view text,
                             std::string_view more = {});
 
-/// Looks at the headers of all inputs. Throws Error that names all inputs that cannot be opened or
+/// Looks at the headers of all inputs. Throws Failure that names all inputs that cannot be opened or
 /// do not have what the dimension and the filter need, or two of different coordinate systems. With
 /// `skip_broken`, inputs that cannot be opened are an error only if there are no others.
 HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& paths,
                             const HeaderSurveyOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

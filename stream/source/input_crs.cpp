@@ -9,7 +9,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// A name for messages; if GDAL knows none, the beginning of the text itself.
@@ -17,7 +17,7 @@ std::string crs_name(const std::string& crs) {
   constexpr std::size_t kLongest = 60;
   try {
     return gdal().crs_name(crs);
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return crs.size() > kLongest ? crs.substr(0, kLongest) + "..." : crs;
   }
 }
@@ -26,7 +26,7 @@ std::string crs_name(const std::string& crs) {
 bool same(const std::string& a, const std::string& b) {
   try {
     return gdal().same_crs(a, b);
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return false;
   }
 }
@@ -60,7 +60,7 @@ std::string given_crs(std::span<const InputCrs> inputs, const CrsChoice& choice,
   for (const InputCrs& input : inputs) {
     if (!seen.insert(input.crs).second || same(choice.given, input.crs)) continue;
     if (!choice.force) {
-      throw Error(
+      throw Failure(
           fmt::format("{} has the coordinate system {}, but {} is given; leave that out, or "
                       "put it in the place of what files tell",
                       input.name, crs_name(input.crs), crs_name(choice.given)),
@@ -101,8 +101,8 @@ std::string common_crs(std::span<const InputCrs> inputs, const CrsChoice& choice
             fmt::format("{} has the coordinate system {}, but {} has {}", input.name,
                         crs_name(input.crs), first->name, crs_name(first->crs));
         if (!choice.force) {
-          throw Error(what + "; bring them to one system, or take coordinates as they are",
-                      ErrorCode::kBadInput, {.file = input.name, .remedy = Remedy::kForeignCrs});
+          throw Failure(what + "; bring them to one system, or take coordinates as they are",
+                        ErrorCode::kBadInput, {.file = input.name, .remedy = Remedy::kForeignCrs});
         }
         warn(fmt::format("warning: {}; coordinates are taken as they are", what));
       }
@@ -116,4 +116,4 @@ std::string common_crs(std::span<const InputCrs> inputs, const CrsChoice& choice
   return first->crs;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 
 #include "formats/bytes/shared_text.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// An input and the coordinate system that it names, or none.
 struct InputCrs {
@@ -22,10 +22,10 @@ struct CrsChoice {
   bool force = false;   ///< coordinates are taken as they are, whatever inputs name
 };
 
-/// The coordinate system that is given, else that of the first input that names one. Throws Error,
+/// The coordinate system that is given, else that of the first input that names one. Throws Failure,
 /// with both systems, if an input has a different one; warns instead where that is forced, and of
 /// inputs that name none beside ones that do, or of which what they tell is none.
 std::string common_crs(std::span<const InputCrs> inputs, const CrsChoice& choice,
                        const std::function<void(std::string_view)>& warn);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "stream/source/false_header.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Headers may be off by so much in their coordinates, by rounding, besides a step of a lattice.
@@ -27,7 +27,7 @@ bool tells_where(const PointHeader& header) {
 }
 
 /// Whether the corners of a box in output coordinates are points of a lattice to the last bit.
-bool is_on(const Lattice& lattice, const Box<3>& world, int dimension) {
+bool is_on(const IntegerLattice& lattice, const Box<3>& world, int dimension) {
   for (int k = 0; k < dimension; ++k) {
     const auto lo = lattice.to_integer(k, world.lo[k]);
     const auto hi = lattice.to_integer(k, world.hi[k]);
@@ -44,7 +44,7 @@ std::optional<Box<3>> extent_told_by(const PointHeader& header) {
   return header.extent;
 }
 
-Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice) {
+Box<3> with_a_step_more(const Box<3>& told, const std::optional<IntegerLattice>& lattice) {
   Box<3> wide = told;
   for (int k = 0; k < 3; ++k) {
     const double most = std::max(std::abs(told.lo[k]), std::abs(told.hi[k]));
@@ -148,4 +148,4 @@ void InputRegions::refuse(const PointBlock& block, std::size_t point, std::size_
       error, fmt::format("{}, from {} to {}", error.what(), corner(told.lo), corner(told.hi)));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

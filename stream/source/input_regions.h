@@ -13,7 +13,7 @@
 #include "stream/source/source_coordinates.h"
 #include "stream/source/source_facts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The box around all points that a header tells; none if it has only zeros in its place, as of a
 /// program that has not filled it in.
@@ -21,7 +21,7 @@ std::optional<Box<3>> extent_told_by(const PointHeader& header);
 
 /// A box in output coordinates that a header tells, and a step of the header's lattice more: many
 /// programs round what they write there.
-Box<3> with_a_step_more(const Box<3>& told, const std::optional<Lattice>& lattice);
+Box<3> with_a_step_more(const Box<3>& told, const std::optional<IntegerLattice>& lattice);
 
 /// The parts of all inputs of which headers tell where their points lie: those that a header tells
 /// of, or a whole file with its extent.
@@ -55,4 +55,4 @@ class InputRegions {
   std::vector<std::size_t> first_;  ///< by input: number of its first region
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Pieces on their way at a time.
@@ -29,4 +29,4 @@ void for_each_block(PointFeed& feed, const std::function<void(PointBlock&)>& tak
   });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "stream/source/changed_input.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Most files that are open at a time because others are read in between.
@@ -212,4 +212,4 @@ std::optional<double> PieceSequence::fraction_read() const {
   return (static_cast<double>(turn_) + *fraction) / static_cast<double>(inputs_.size());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

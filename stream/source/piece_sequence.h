@@ -15,7 +15,7 @@
 #include "stream/points/point_feed.h"
 #include "stream/source/source_facts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 struct PieceSequenceOptions {
   PointReaderOptions reader{};
@@ -57,7 +57,7 @@ class PieceSequence {
 
   /// From now on fetch() gives a piece of one input, or one whole input, and then false. Indices
   /// count through all inputs where all headers tell their counts, else from the piece's beginning.
-  /// Throws Error for a file that is another one than its digest tells.
+  /// Throws Failure for a file that is another one than its digest tells.
   void begin_piece(std::size_t input, std::optional<std::uint64_t> piece);
 
   /// Whether indices count through all inputs also in pieces.
@@ -116,4 +116,4 @@ class PieceSequence {
   std::optional<std::uint64_t> first_of_piece_;  ///< number of its first record, where that counts
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -15,7 +15,7 @@
 #include "formats/bytes/number_type.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// "1, 3-5, 9": the numbers of the bits that are set.
@@ -75,7 +75,7 @@ int axis_of(std::string_view name) {
 }
 
 /// The numbers of that name of all points: output coordinates, or what attributes mean.
-std::vector<double> column_of(const std::string& name, const std::optional<Lattice>& lattice,
+std::vector<double> column_of(const std::string& name, const std::optional<IntegerLattice>& lattice,
                               const AttributeLayout& layout, const PointBlock& block) {
   std::vector<double> column(block.size());
   const int axis = axis_of(name);
@@ -92,7 +92,7 @@ std::vector<double> column_of(const std::string& name, const std::optional<Latti
   return column;
 }
 
-std::vector<bool> where_holds(const Condition& where, const std::optional<Lattice>& lattice,
+std::vector<bool> where_holds(const Condition& where, const std::optional<IntegerLattice>& lattice,
                               const AttributeLayout& layout, const PointBlock& block) {
   std::vector<std::vector<double>> columns;
   for (const std::string& name : where.names()) {
@@ -135,14 +135,15 @@ std::optional<Box<3>> PointFilter::loose_bounds() const {
 
 void refuse_empty_input(const PointCounts& counts) {
   if (counts.read == 0) {
-    throw Error(counts.lost == 0 ? std::string("the input has no points")
-                                 : fmt::format("all {} points of the input are lost", counts.lost),
-                ErrorCode::kDegenerateInput);
+    throw Failure(counts.lost == 0
+                      ? std::string("the input has no points")
+                      : fmt::format("all {} points of the input are lost", counts.lost),
+                  ErrorCode::kDegenerateInput);
   }
-  throw Error("the filters leave no points: " + describe(counts), ErrorCode::kDegenerateInput);
+  throw Failure("the filters leave no points: " + describe(counts), ErrorCode::kDegenerateInput);
 }
 
-void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
+void apply_filter(const PointFilter& filter, const std::optional<IntegerLattice>& lattice,
                   const AttributeLayout& layout, PointBlock& block, PointCounts& counts) {
   const ByteField classification(layout, kClassification);
   const ByteField number(layout, kReturnNumber);
@@ -171,7 +172,7 @@ void apply_filter(const PointFilter& filter, const std::optional<Lattice>& latti
   block.keep([&](std::size_t i) { return kept[i]; });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
@@ -184,7 +185,7 @@ std::string describe(const PointCounts& counts) {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},
        {counts.skipped, "skipped"},
-       {counts.classes, detail::other_classes_text(counts)},
+       {counts.classes, stream::other_classes_text(counts)},
        {counts.returns, "of other returns"},
        {counts.where, "for which the condition does not hold"},
        {counts.bounds, "outside the bounds"},

@@ -13,7 +13,7 @@
 #include "src/geometry/lattice.h"
 #include "stream/source/condition/condition.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Which returns of a pulse are wanted; any that is named here. A return of unknown number or count
 /// passes for first and last.
@@ -47,12 +47,12 @@ struct PointFilter {
   [[nodiscard]] std::optional<Box<3>> loose_bounds() const;
 };
 
-/// Throws Error: there are no points, or none are left of those that were read.
+/// Throws Failure: there are no points, or none are left of those that were read.
 [[noreturn]] void refuse_empty_input(const PointCounts& counts);
 
 /// Takes out of `block` what the filter drops, and counts it. The points are integers of `lattice`,
 /// if there is one, have records of `layout`, and the index is still that of their own input.
-void apply_filter(const PointFilter& filter, const std::optional<Lattice>& lattice,
+void apply_filter(const PointFilter& filter, const std::optional<IntegerLattice>& lattice,
                   const AttributeLayout& layout, PointBlock& block, PointCounts& counts);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

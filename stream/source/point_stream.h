@@ -12,14 +12,14 @@
 #include "stream/points/point_feed.h"
 #include "stream/source/point_filter.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The points of a run as the pipeline takes them.
 /// decode() gives them on lattice() if that is set, else in output coordinates.
 class PointStream : public PointFeed {
  public:
   /// The lattice on which all points lie, if there is one.
-  [[nodiscard]] virtual const std::optional<Lattice>& lattice() const = 0;
+  [[nodiscard]] virtual const std::optional<IntegerLattice>& lattice() const = 0;
   /// About how many points will come, where that can be told; rather too many.
   [[nodiscard]] virtual std::optional<std::uint64_t> expected() const = 0;
   /// Of all points, in the coordinates of decode(), where that is known.
@@ -57,4 +57,4 @@ class PointStream : public PointFeed {
   [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "formats/points/point_formats.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Integers up to `largest`, their signs aside.
@@ -67,7 +67,7 @@ void SourceCoordinates::check_own_lattices() {
 }
 
 std::optional<CommonLattice> SourceCoordinates::common_lattice() const {
-  std::vector<Lattice> lattices;
+  std::vector<IntegerLattice> lattices;
   std::vector<double> largest;
   for (const SourceFacts::Input& input : facts_.inputs) {
     if (!input.header.lattice) return std::nullopt;
@@ -167,7 +167,7 @@ Box<3> SourceCoordinates::told_box(std::size_t input, const Box<3>& world) const
 }
 
 LatticePoint SourceCoordinates::placed(std::size_t input, const LatticePoint& point) const {
-  const Lattice& own = *header_of(input).lattice;
+  const IntegerLattice& own = *header_of(input).lattice;
   if (!lattice_) return LatticePoint(own.to_world(point).numbers());
   const LatticeMap& map = inputs_[input].map;
   return {map.map(0, point[0]), map.map(1, point[1]),
@@ -196,4 +196,4 @@ void SourceCoordinates::bring(std::size_t input, const AttributeLayout& attribut
   for (LatticePoint& point : block.points) point = placed(input, point);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -13,20 +13,20 @@
 #include "stream/source/point_filter.h"
 #include "stream/source/source_facts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The coordinates in which the points of all inputs come: integers of one lattice where all inputs
 /// lie on one, else output coordinates.
 class SourceCoordinates {
  public:
   /// Finds them; `filter` says which points are used. `facts` must outlive the coordinates;
-  /// `detail` receives which ones they are, and why. Throws Error if the lattice of an input does
+  /// `detail` receives which ones they are, and why. Throws Failure if the lattice of an input does
   /// not keep its points apart, by what its header says of them.
   SourceCoordinates(const SourceFacts& facts, int dimension, const PointFilter& filter,
                     const std::function<void(std::string_view)>& detail);
 
   /// The lattice of all inputs (find_common_lattice); nothing: output coordinates.
-  [[nodiscard]] const std::optional<Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const { return lattice_; }
   /// Whether z is on lattice(), too: an integer, and not an output coordinate.
   [[nodiscard]] bool heights_on_lattice() const { return heights_on_lattice_; }
 
@@ -43,7 +43,7 @@ class SourceCoordinates {
   [[nodiscard]] Box<3> told_box(std::size_t input, const Box<3>& world) const;
 
   /// Brings the points of a block, which are as the reader of an input gives them, into these
-  /// coordinates. Throws Error if lattices do not keep those apart that the filter keeps. Safe for
+  /// coordinates. Throws Failure if lattices do not keep those apart that the filter keeps. Safe for
   /// many threads at a time.
   void bring(std::size_t input, const AttributeLayout& attributes, PointBlock& block) const;
 
@@ -75,8 +75,8 @@ class SourceCoordinates {
   int dimension_;
   PointFilter filter_;  ///< its bounds are loose
   std::vector<Input> inputs_;
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   bool heights_on_lattice_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

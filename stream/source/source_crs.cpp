@@ -14,7 +14,7 @@
 #include "formats/points/las/geotiff_keys.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What GDAL makes of what a header tells.
@@ -64,7 +64,7 @@ bool has_gdal() {
   try {
     static_cast<void>(gdal());
     return true;
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return false;
   }
 }
@@ -107,4 +107,4 @@ std::string settled_crs(const SourceFacts& facts, CrsNeed need, const SourceCrsO
   return std::ranges::all_of(systems, is_as_before) ? facts.crs : common(systems, options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

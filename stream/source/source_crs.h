@@ -10,7 +10,7 @@
 #include "stream/source/input_crs.h"
 #include "stream/source/source_facts.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What an output needs of the coordinate system.
 enum class CrsNeed : std::uint8_t {
@@ -29,8 +29,8 @@ struct SourceCrsOptions {
 std::string find_crs(const SourceFacts& facts, const SourceCrsOptions& options);
 
 /// `facts.crs`, which find_crs() has found, as an output needs it: with the system of heights that
-/// inputs tell; if GDAL cannot read it, what else they tell, or none with a warning. Throws Error
+/// inputs tell; if GDAL cannot read it, what else they tell, or none with a warning. Throws Failure
 /// if GDAL is needed, and not there.
 std::string settled_crs(const SourceFacts& facts, CrsNeed need, const SourceCrsOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The share of a box, by its area in x, y, that a part of it has.
@@ -58,4 +58,4 @@ std::optional<Box<3>> SourceFacts::extent(const std::optional<Box<3>>& bounds) c
   return extent.empty() ? std::nullopt : std::optional(extent);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "stream/source/point_filter.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What one look at all inputs tells, and what follows from it for all of them together.
 struct SourceFacts {
@@ -41,4 +41,4 @@ struct SourceFacts {
   [[nodiscard]] std::optional<Box<3>> extent(const std::optional<Box<3>>& bounds) const;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

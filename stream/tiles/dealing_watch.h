@@ -6,7 +6,7 @@
 #include "formats/points/common/point_reader.h"
 #include "stream/checkpoint/resting.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Who looks on while a TileTree deals points. What it throws ends the dealing.
 class DealingWatch : public Resting {
@@ -30,4 +30,4 @@ class DealingWatch : public Resting {
   virtual void dealt_again(std::uint64_t /*points*/, double /*fraction*/) {}
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,7 @@
 
 #include "stream/tiles/regions/region_plan.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// So many tiles are put together on trial ...
@@ -53,4 +53,4 @@ CutTree even_cuts(const TileTable& table) {
   return plan_of(table, kEvenFill * static_cast<double>(table.capacity)).cuts;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 #include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/tile_table.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The tiles in the order of the tree: their numbers depend on threads.
 std::vector<std::uint32_t> numbers_in_order(const CutTree& cuts);
@@ -19,4 +19,4 @@ bool tiles_nest(const TileTable& table);
 /// Cuts by which all points are divided into tiles that nest.
 CutTree even_cuts(const TileTable& table);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "stream/tiles/storage/segment_reader.h"
 #include "stream/tiles/storage/tile.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What goes through the pipeline of a TileTree at a time.
 struct PointBatch {
@@ -25,4 +25,4 @@ struct PointBatch {
   std::vector<std::uint32_t> cells_done;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

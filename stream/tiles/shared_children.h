@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// The children of a node. A copy shares them, so that a tree of which one part becomes another
 /// takes memory for what is above that part only. Who changes a child changes it in all copies.
@@ -55,4 +57,4 @@ class SharedChildren {
   std::vector<std::shared_ptr<Node>> nodes_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 void TileDealer::deal(PointBatch& batch, const PointBlock& points) const {
   const StageTimer timer(times_, Stage::kDeal);
@@ -78,4 +78,4 @@ void TileDealer::deal_waiting(std::vector<HeldPoints> held, PointBatch& batch) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

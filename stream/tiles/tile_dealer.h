@@ -10,7 +10,7 @@
 #include "stream/tiles/tile_spiller.h"
 #include "stream/tiles/tile_table.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Deals points into the tiles' buffers, where they wait. A tile that has become too large is cut
 /// in two at once.
@@ -44,4 +44,4 @@ class TileDealer {
   StageTimes& times_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

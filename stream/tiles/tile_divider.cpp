@@ -15,7 +15,7 @@
 #include "stream/tiles/storage/parted_points.h"
 #include "stream/tiles/storage/segment_reader.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// How full tiles are meant to get that are made of a sample: of all points; where those so far
@@ -411,4 +411,4 @@ void TileDivider::append_left_over(CutTree::NodeRef ref, std::vector<TileSegment
   for (const CutTree::NodeRef side : table_.cuts.sides(ref)) append_left_over(side, segments);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

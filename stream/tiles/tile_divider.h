@@ -12,7 +12,7 @@
 #include "stream/tiles/storage/tile.h"
 #include "stream/tiles/tile_table.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Cuts tiles: the first one into many, those that outgrow their share, and long ones. Segments on
 /// the disk that lie on both sides of a cut are left over, to be dealt once more.
@@ -79,4 +79,4 @@ class TileDivider {
   std::uint64_t left_over_points_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/storage/segment_reader.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Calls one of the two for each part of a tile, in the order in which they came.
@@ -280,4 +280,4 @@ void TileLoader::state(State& state) {
 template void TileLoader::state(StateReader&);
 template void TileLoader::state(StateWriter&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -14,7 +14,7 @@
 #include "stream/tiles/tile_sketches.h"
 #include "stream/tiles/tile_table.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The tiles that get no more points: the tree over them, and their points when they are loaded.
 class TileLoader {
@@ -70,4 +70,4 @@ class TileLoader {
   std::unordered_map<std::uint32_t, Tile> taken_;  ///< by their number
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// An axis may be halved whose extent is at least this share of the longest one.
@@ -90,4 +90,4 @@ TileNode<D> tree_over(std::vector<TileNode<D>> tiles) {
 template TileNode<2> tree_over(std::vector<TileNode<2>>);
 template TileNode<3> tree_over(std::vector<TileNode<3>>);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "stream/tiles/shared_children.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A node of the finished tree over tiles: a tile that can be loaded, or two nodes.
 template <int D>
@@ -63,4 +63,4 @@ struct TileNode {
 template <int D>
 TileNode<D> tree_over(std::vector<TileNode<D>> tiles);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

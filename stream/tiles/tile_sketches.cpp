@@ -5,7 +5,7 @@
 #include "stream/points/point_sample.h"
 #include "stream/tiles/cuts/tile_cut.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// So many points for each cell, and cells of a tile: more tell little more.
@@ -91,4 +91,4 @@ template void TileSketches::sketch<3>(TileNode<3>&,
                                       const std::function<const Tile&(std::uint32_t)>&,
                                       std::uint64_t) const;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

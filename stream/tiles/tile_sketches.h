@@ -9,7 +9,7 @@
 #include "stream/tiles/storage/tile.h"
 #include "stream/tiles/tile_node.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Makes sketches of where the points of hollow tiles lie, which others ask that are triangulated
 /// before or after them.
@@ -42,4 +42,4 @@ class TileSketches {
   std::size_t cells_begun_ = 0;  ///< of what is on the disk
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/storage/parted_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Full buffers are emptied by this share of them.
@@ -174,4 +174,4 @@ std::uint64_t TileSpiller::spill_complete(std::span<Tile* const> tiles) {
   return memory;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

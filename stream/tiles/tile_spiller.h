@@ -11,7 +11,7 @@
 #include "stream/tiles/tile_sketches.h"
 #include "stream/tiles/tile_table.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Brings points that wait to the disk: decides whose, encodes and writes them.
 class TileSpiller {
@@ -58,4 +58,4 @@ class TileSpiller {
   std::uint64_t bytes_written_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

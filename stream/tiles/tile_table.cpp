@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What a tile and a segment take in memory, in points that wait.
@@ -53,4 +53,4 @@ void TileTable::set_cell_root(std::uint32_t tile, std::uint32_t cell, CutTree::N
   if (options.plan != nullptr && cell_roots[cell] == CutTree::ref_of(tile)) cell_roots[cell] = cut;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

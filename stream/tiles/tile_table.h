@@ -12,7 +12,7 @@
 #include "stream/tiles/storage/tile.h"
 #include "stream/tiles/tile_tree_options.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The tiles that points are dealt into, and what is known of all of them: what those who deal,
 /// spill, divide and load share. For the one thread that deals, but for what says otherwise; it
@@ -65,4 +65,4 @@ struct TileTable {
   bool filled = false;                    ///< all points have come
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Blocks that points are decoded into before they are dealt: as many as are decoded at a time.
@@ -286,4 +286,4 @@ std::uint64_t TileTree::held_bytes() const {
 template std::optional<TileNode<2>> TileTree::take_nodes<2>();
 template std::optional<TileNode<3>> TileTree::take_nodes<3>();
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

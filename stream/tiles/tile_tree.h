@@ -25,7 +25,7 @@
 #include "stream/tiles/tile_table.h"
 #include "stream/tiles/tile_tree_options.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points of any number and order, dealt into tiles that fit into memory. Points wait in memory;
 /// when too many do, tiles write theirs to the disk. A tile that has become too large is cut in two
@@ -139,4 +139,4 @@ class TileTree {
   std::uint64_t dealt_again_ = 0;               ///< points, before these
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

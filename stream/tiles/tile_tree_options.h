@@ -11,7 +11,7 @@
 #include "src/geometry/framed_point.h"
 #include "stream/tiles/regions/region_plan.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// How a TileTree deals its points.
 struct TileTreeOptions {
@@ -34,4 +34,4 @@ struct TileTreeOptions {
   std::optional<Heights> one_of_equal{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -14,7 +14,7 @@
 #include "stream/tiles/storage/tile_points.h"
 #include "stream/tiles/tile_node.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -217,8 +217,8 @@ class Merge {
       if (other != c) siblings.push_back(trees_[other]);
     }
     std::vector<Exposure> exposure(child.simplices.size());
-    detail::find_exposed<D, Tree>(child.simplices, points, siblings,
-                                  [&exposure](std::size_t s) { exposure[s] = 1; });
+    delaunay::find_exposed<D, Tree>(child.simplices, points, siblings,
+                                    [&exposure](std::size_t s) { exposure[s] = 1; });
     return exposure;
   }
 
@@ -334,4 +334,4 @@ template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Til
 template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
                                        MemoryBudget&, Task&, Kernel);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

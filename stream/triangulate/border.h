@@ -14,9 +14,11 @@
 #include "src/runtime/work_lease.h"
 #include "stream/output/stream_place.h"
 
-namespace spillway::detail {
-
+namespace spillway::runtime {
 struct Task;
+}
+
+namespace spillway::stream {
 
 template <int D>
 struct BorderVertex {
@@ -106,10 +108,10 @@ std::uint64_t merge_bytes(std::uint64_t border_points, std::uint64_t below);
 /// of open children, are triangulated; of that, simplices are accepted that span children, or that
 /// their own child has in its border, facing the same way (Funke, Sanders 2017, Algorithm 1). All
 /// others of the children are kept as they are.
-/// Leases the memory of that from `budget`, which must outlive the result; throws Error if there is
+/// Leases the memory of that from `budget`, which must outlive the result; throws Failure if there is
 /// not enough.
 template <int D, PointTree Tree>
 MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tree* const> trees,
                               MemoryBudget& budget, Task& task, Kernel kernel = Kernel::kSpillway);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

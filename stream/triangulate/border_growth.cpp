@@ -5,7 +5,7 @@
 
 #include "stream/tiles/storage/tile_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Fewer tiles don't tell how borders grow.
@@ -126,4 +126,4 @@ std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
 template class BorderGrowth<2>;
 template class BorderGrowth<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

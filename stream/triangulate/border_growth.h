@@ -8,7 +8,7 @@
 
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What borders between tiles have taken so far, and from that what the rest of the run will need.
 /// Used by many threads.
@@ -63,4 +63,4 @@ class BorderGrowth {
   std::uint64_t most_merge_points_ = 0;  ///< below that
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

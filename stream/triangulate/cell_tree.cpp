@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 template <int D>
 CellTree<D>::CellTree(const RegionPlan& plan)
@@ -116,4 +116,4 @@ void CellTree<D>::add_last_join(Completion& done) {
 template class CellTree<2>;
 template class CellTree<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "stream/tiles/regions/region_plan.h"
 #include "stream/tiles/tile_node.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The tree over the cells of a plan, as far as it is known while they are completed one by one: of
 /// a complete cell its tiles with tight boxes, of the others the box that has all of their points.
@@ -61,4 +61,4 @@ class CellTree {
   std::vector<std::optional<std::size_t>> part_of_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

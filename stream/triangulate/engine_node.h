@@ -9,7 +9,7 @@
 #include "stream/triangulate/border.h"
 #include "stream/triangulate/surroundings.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Keeps the trees that a node and its `Outside` point to.
 template <int D>
@@ -31,4 +31,4 @@ struct EngineNode {
   Border<D> border{};                        ///< once it is done
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

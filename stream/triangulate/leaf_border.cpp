@@ -6,7 +6,7 @@
 #include "src/delaunay/border/border_search.h"
 #include "src/delaunay/border/facing_sides.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What is known of a simplex: the bits of its exposure, and one above them for what another tile
@@ -116,7 +116,7 @@ class LeafBorderSearch {
     mesh_.find(bit);
     const Siblings<D> siblings = surroundings_.siblings(parts);
     PointSearch<D> search(siblings, kStepsOfPoint * part_.points.size());
-    search_border_alone<D>(beside(sides), mesh_, [&search](const RegionBatch<D>& regions) {
+    search_border_alone<D>(beside(sides), mesh_, [&search](const ConflictRegionBatch<D>& regions) {
       return search.may_hold_points(regions, regions.all());
     });
   }
@@ -135,7 +135,7 @@ class LeafBorderSearch {
       std::iota(starts.begin(), starts.end(), 0U);
     }
     mesh_.find(kChanged);
-    search_border_alone<D>(std::move(starts), mesh_, [this](const RegionBatch<D>& regions) {
+    search_border_alone<D>(std::move(starts), mesh_, [this](const ConflictRegionBatch<D>& regions) {
       return surroundings_.may_meet_tiles(regions, regions.all());
     });
   }
@@ -178,7 +178,7 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
   ChangeSearch<D> search(surroundings, kStepsOfPoint * leaf.points.size());
   for_each_region_batch<D>(
       open.size(), [&](std::size_t i) { return leaf.open_simplex(i); }, leaf.points,
-      [&](std::size_t first, const RegionBatch<D>& regions) {
+      [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
         const std::uint64_t changed =
             search.may_change(regions, told.exposure.empty() ? nullptr : &told.exposure[first]);
         tell_fates(regions, changed,
@@ -192,4 +192,4 @@ template LeafFates search_leaf_border(const LeafPart<3>&, Surroundings<3>, BaseC
 template LeafFates test_leaf_border(const LeafToSettle<2>&, const Surroundings<2>&);
 template LeafFates test_leaf_border(const LeafToSettle<3>&, const Surroundings<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

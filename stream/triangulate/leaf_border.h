@@ -8,7 +8,7 @@
 #include "stream/triangulate/settle.h"
 #include "stream/triangulate/surroundings.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What becomes of the simplices of a leaf.
 struct LeafFates {
@@ -39,7 +39,7 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
 
 /// Finds out the fates of simplices whose regions these are: calls set(s, fate) for each.
 template <int D, typename Set>
-void tell_fates(const RegionBatch<D>& regions, std::uint64_t changed, const Set& set) {
+void tell_fates(const ConflictRegionBatch<D>& regions, std::uint64_t changed, const Set& set) {
   for (std::size_t s = 0; s < regions.kSize && (regions.all() >> s & 1) != 0; ++s) {
     const bool kept = (changed >> s & 1) != 0;
     const bool infinite = (regions.infinite() >> s & 1) != 0;
@@ -47,4 +47,4 @@ void tell_fates(const RegionBatch<D>& regions, std::uint64_t changed, const Set&
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// Trees that grow upwards while they are worked off, by many threads: whoever is done with the
 /// last child of a node goes on with that node. Nodes are numbered in the order in which they are
@@ -72,4 +74,4 @@ class MergeForest {
   std::deque<Node> nodes_;    ///< which stay where they are
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 
 #include "src/delaunay/division/point_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A tree of points that is worked off from its leaves up, by many threads: whoever is done with
 /// the last child of a node goes on with that node. Nodes are numbered in post-order. Each has what
@@ -101,4 +101,4 @@ class MergeTree {
   std::vector<Node*> leaves_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "stream/tiles/tile_node.h"
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A cell of a plan that is complete, with its tiles; none if it has no points.
 template <int D>
@@ -57,4 +57,4 @@ class NodesBefore {
   std::vector<KeptBorder> borders_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,7 @@
 
 #include "src/delaunay/base_case/base_case.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Enough to tell the exponent; at worst they make as many simplices as pairs, in 1 MiB.
@@ -49,4 +49,4 @@ WorkForecast SampleForecast<D>::forecast() const {
 template class SampleForecast<2>;
 template class SampleForecast<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/runtime/memory_budget.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What a base case of all points would take, by a few of them: where a leaf of a tile makes far
 /// more simplices than usual, it knows nothing of those that cross its sides. Used by many threads.
@@ -27,4 +27,4 @@ class SampleForecast {
   std::vector<Point<D>> sample_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 
 #include "src/geometry/longest_edge.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 // What a vertex is used by, as bits.
@@ -72,7 +72,7 @@ class Settlement {
   /// as its finite simplices are connected, and each of its infinite ones is beside a finite one.
   void mark_uses_from_border() {
     std::fill(use_.begin(), use_.end(), kByFinal | kByEmitted);
-    for (const Duplicate& duplicate : part_.duplicates) {
+    for (const DroppedDuplicate& duplicate : part_.duplicates) {
       use_[duplicate.dropped - part_.first_vertex] = 0;
     }
     part_.for_each_open([&](std::size_t s, std::size_t place) {
@@ -95,7 +95,7 @@ class Settlement {
   }
 
   void announce_vertices() {
-    MeshBlock& mesh = result_.mesh;
+    MeshStreamBlock& mesh = result_.mesh;
     mesh.vertices.resize(use_.size());
     hashes_.resize(use_.size());
     if (output_.input_index) mesh.input_index.resize(use_.size());
@@ -116,7 +116,7 @@ class Settlement {
   }
 
   void import_and_finalize() {
-    MeshBlock& mesh = result_.mesh;
+    MeshStreamBlock& mesh = result_.mesh;
     result_.border.dimension = part_.dimension();
     mesh.finalized.resize(use_.size());
     std::uint32_t* finalized = mesh.finalized.data();
@@ -273,4 +273,4 @@ template Settled<3> settle(const MergeToSettle<3>&, const OutputOptions&);
 template Settled<2> settle(const LeafToSettle<2>&, const OutputOptions&);
 template Settled<3> settle(const LeafToSettle<3>&, const OutputOptions&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

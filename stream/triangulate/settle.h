@@ -15,12 +15,12 @@
 #include "stream/output/stream_place.h"
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What a leaf or a merge gives to the stream, and what it keeps.
 template <int D>
 struct Settled {
-  MeshBlock mesh;                               ///< `imported` still empty
+  MeshStreamBlock mesh;                         ///< `imported` still empty
   std::vector<StreamPlace> imported;            ///< where the imported vertices were announced
   std::vector<LatticePoint> imported_vertices;  ///< they themselves, like the mesh's, if asked for
   std::vector<std::uint64_t> imported_index;    ///< likewise, if vertices carry it
@@ -81,10 +81,11 @@ template <int D>
 struct LeafToSettle {
   BlockPlace block;
   std::span<const std::array<VertexId, D + 1>> corners;  ///< by simplex
-  VertexId first_vertex = 0;              ///< the number that its first vertex has in `corners`
-  std::span<const Duplicate> duplicates;  ///< vertices without simplices, by the same numbers
-  std::span<const Fate> fates;            ///< by simplex
-  std::span<const std::uint32_t> open;    ///< ascending; the fates of all others are kFinal
+  VertexId first_vertex = 0;  ///< the number that its first vertex has in `corners`
+  std::span<const DroppedDuplicate>
+      duplicates;                       ///< vertices without simplices, by the same numbers
+  std::span<const Fate> fates;          ///< by simplex
+  std::span<const std::uint32_t> open;  ///< ascending; the fates of all others are kFinal
   /// Those, if they are listed by themselves; their neighbours are any simplices.
   std::span<const Simplex<D>> open_simplices;
   std::span<const Exposure> exposure;     ///< of those `open`, where it is known
@@ -142,4 +143,4 @@ struct LeafToSettle {
 template <int D, template <int> typename Part>
 Settled<D> settle(const Part<D>& part, const OutputOptions& output);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/border/point_search.h"
-#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/division/divide.h"
 #include "stream/tiles/tile_node.h"
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Where everything else is: the roots of the trees of boxes that are not this tile's.
 template <int D>
@@ -45,7 +45,7 @@ struct Surroundings {
   }
 
   /// The bits of those regions asked for that meet the box of another tile.
-  [[nodiscard]] std::uint64_t may_meet_tiles(const RegionBatch<D>& regions,
+  [[nodiscard]] std::uint64_t may_meet_tiles(const ConflictRegionBatch<D>& regions,
                                              std::uint64_t asked) const {
     std::uint64_t met = 0;
     for (const TileNode<D>* tile : outside) met |= regions.may_meet_leaf(*tile, asked & ~met);
@@ -66,7 +66,8 @@ class ChangeSearch {
   }
 
   /// The bits of regions that something may change. If `exposure` is given, sets that of each.
-  [[nodiscard]] std::uint64_t may_change(const RegionBatch<D>& regions, Exposure* exposure) {
+  [[nodiscard]] std::uint64_t may_change(const ConflictRegionBatch<D>& regions,
+                                         Exposure* exposure) {
     std::uint64_t changed = 0;
     for (std::size_t level = 0; level < searches_.size(); ++level) {
       // Who wants to know the exposure asks for each level.
@@ -86,4 +87,4 @@ class ChangeSearch {
   std::vector<PointSearch<D>> searches_;  ///< by level
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

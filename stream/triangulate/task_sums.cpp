@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 void TaskSums::add_tile(const Task& tile) {
   const std::lock_guard lock(mutex_);
@@ -58,4 +58,4 @@ void TaskSums::add_sum(Sums& sums, const TaskSum& sum) {
   all.grains += sum.grains;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/runtime/task.h"
 #include "stream/plan/run_trace.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The sums of a run's tasks by scope, level and kind: as much memory as there are levels, whatever
 /// the number of tasks. Used by many threads.
@@ -41,4 +41,4 @@ class TaskSums {
   Sums sums_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -11,7 +11,7 @@
 #include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Full tiles that there is memory for at the same time, or more smaller ones. Two, so that there
@@ -84,9 +84,9 @@ MemoryPlan TileEngine<D>::plan_for(unsigned threads, bool early) const {
 template <int D>
 TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
   if (options_.asked.tile_points > 0) {
-    plan_.tile_capacity = options_.asked.tile_points;
+    plan_.tile_points = options_.asked.tile_points;
   } else if (expected.count) {
-    plan_.tile_capacity = tile_capacity_for(*expected.count, plan_);
+    plan_.tile_points = tile_points_for(*expected.count, plan_);
   } else {
     grows_capacity_ = true;
   }
@@ -94,7 +94,7 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
   const bool index = options_.asked.input_index || expected.ordered_by_index;
   if (index) plan_.buffered_points = plan_.buffered_points * 3 / 4;
   return {.dimension = D,
-          .capacity = plan_.tile_capacity,
+          .capacity = plan_.tile_points,
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,
@@ -117,7 +117,7 @@ void TileEngine<D>::decoded(const PointBlock& points) {
 
 template <int D>
 std::size_t TileEngine<D>::capacity_for(std::uint64_t points) {
-  return grows_capacity_ ? tile_capacity_for(points, plan_) : 0;
+  return grows_capacity_ ? tile_points_for(points, plan_) : 0;
 }
 
 /// What is known of tiles stays in memory until they are triangulated, so there must not be too
@@ -131,7 +131,7 @@ void TileEngine<D>::tiles_made(std::size_t tiles) {
   // Tiles are cut in halves, so in the end they may be half full. What is expected may be a lie.
   const std::uint64_t expected = expected_points_ / std::max<std::size_t>(1, tree_.capacity());
   const std::uint64_t all = 2 * std::clamp<std::uint64_t>(expected, tiles, 1000 * tiles);
-  throw Error(
+  throw Failure(
       fmt::format("{} of memory are too little for what is known of {} tiles of at most {} "
                   "points",
                   memory_size_text(budget_.whole()), tiles, tree_.capacity()),
@@ -141,7 +141,7 @@ void TileEngine<D>::tiles_made(std::size_t tiles) {
 
 template <int D>
 void TileEngine<D>::spill(PointFeed& feed) {
-  const Stopwatch watch(figures_.read_seconds);
+  const Stopwatch watch(statistics_.read_seconds);
   const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
   if (!cells_) return tree_.fill(feed);
   TaskGroup beside;
@@ -167,9 +167,9 @@ void TileEngine<D>::cell_done(std::uint32_t cell) {
 
 template <int D>
 std::uint64_t TileEngine<D>::divide_large() {
-  const Stopwatch watch(figures_.divide_seconds);
+  const Stopwatch watch(statistics_.divide_seconds);
   const MemoryLease buffers(budget_, buffer_bytes(), "points that wait to be spilled");
-  return figures_.divided_points = tree_.divide_large();
+  return statistics_.divided_points = tree_.divide_large();
 }
 
 template <int D>
@@ -192,9 +192,9 @@ void TileEngine<D>::lease_held_points() {
 
 template <int D>
 void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_points) {
-  context_.leaf_points =
-      options_.asked.leaf_points > 0 ? options_.asked.leaf_points : leaf_size_for(points, D, plan_);
-  sequencer_.tell_first_block([this] { figures_.first_block_read_points = tree_.points(); });
+  context_.leaf_points = options_.asked.leaf_points > 0 ? options_.asked.leaf_points
+                                                        : leaf_points_for(points, D, plan_);
+  sequencer_.tell_first_block([this] { statistics_.first_block_read_points = tree_.points(); });
   estimate_shortages(all_points);
 }
 
@@ -206,7 +206,7 @@ const std::optional<TileNode<D>>& TileEngine<D>::take_nodes() {
 
 template <int D>
 Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& outside) {
-  const Stopwatch watch(figures_.triangulate_seconds);
+  const Stopwatch watch(statistics_.triangulate_seconds);
   std::uint64_t all_points = root.points;
   for (const TileNode<D>* const other : outside) all_points += other->points;
   lease_held_points();
@@ -220,7 +220,7 @@ Border<D> TileEngine<D>::triangulate(const TileNode<D>& root, const Outside<D>& 
 
 template <int D>
 std::uint64_t TileEngine<D>::triangulate_rest() {
-  const Stopwatch watch(figures_.triangulate_seconds);
+  const Stopwatch watch(statistics_.triangulate_seconds);
   lease_held_points();
   points_before_ = counts_.points;
   tells_progress_ = true;
@@ -301,8 +301,8 @@ typename TileEngine<D>::Node* TileEngine<D>::add_nodes(
     children.push_back(add_nodes(child, others, kept));
   }
   if (tree.leaf()) {
-    ++figures_.tiles;
-    count_shape(tree.box, figures_.tile_shapes);
+    ++statistics_.tiles;
+    count_shape(tree.box, statistics_.tile_shapes);
     if (tree.sketch) {
       sketches_.take(PointSketch<D>::bytes_of(tree.sketch->plates.size()), "sketches of tiles");
     }
@@ -337,7 +337,7 @@ typename TileEngine<D>::Lanes TileEngine<D>::make_lanes() {
 }
 
 /// Points that are loaded for a node, of what others may have, too: a tile may be larger than
-/// planned by --tile.
+/// planned by --tile-points.
 template <int D>
 std::uint64_t TileEngine<D>::loaded_points(const Node& node) const {
   return node.children.empty() ? std::min<std::uint64_t>(node.tree->size(), plan_.tile_room) : 0;
@@ -418,9 +418,9 @@ void TileEngine<D>::merge_node(Node& node) {
   tell_done(node, std::move(task));
   node.outside = {};
   node.kept = {};
-  const std::lock_guard lock(figures_mutex_);
-  if (figures_.final_by_level.size() < node.level) figures_.final_by_level.resize(node.level);
-  figures_.final_by_level[node.level - 1] += merged.final_simplices;
+  const std::lock_guard lock(statistics_mutex_);
+  if (statistics_.final_by_level.size() < node.level) statistics_.final_by_level.resize(node.level);
+  statistics_.final_by_level[node.level - 1] += merged.final_simplices;
 }
 
 template <int D>
@@ -451,30 +451,30 @@ void TileEngine<D>::report_progress() const {
 }
 
 template <int D>
-RunFigures TileEngine<D>::figures() {
-  figures_.threads = plan_.threads;
-  figures_.mesh = sequencer_.totals();
-  figures_.mesh.points = tree_.points();
-  figures_.mesh.duplicates = counts_.duplicates;
-  if (!options_.asked.max_edge) figures_.mesh.hull_facets = counts_.hull_facets;
-  figures_.left_out = counts_.left_out;
-  figures_.leaves = counts_.leaves;
-  figures_.tile_capacity = tree_.capacity();
-  figures_.leaf_size = context_.leaf_points;
-  figures_.spilled_points = tree_.points_written();
-  figures_.spilled_bytes = tree_.bytes_written();
-  figures_.final_in_leaves = counts_.final_in_leaves;
-  figures_.final_in_tiles = counts_.final_in_tiles;
-  figures_.retriangulated = counts_.retriangulated;
-  figures_.border_simplices = counts_.borders.most_simplices();
-  figures_.border_bytes = counts_.borders.most_bytes();
+RunStatistics TileEngine<D>::statistics() {
+  statistics_.threads = plan_.threads;
+  statistics_.mesh = sequencer_.totals();
+  statistics_.mesh.points = tree_.points();
+  statistics_.mesh.duplicates = counts_.duplicates;
+  if (!options_.asked.max_edge) statistics_.mesh.hull_facets = counts_.hull_facets;
+  statistics_.left_out = counts_.left_out;
+  statistics_.leaves = counts_.leaves;
+  statistics_.tile_points = tree_.capacity();
+  statistics_.leaf_points = context_.leaf_points;
+  statistics_.spilled_points = tree_.points_written();
+  statistics_.spilled_bytes = tree_.bytes_written();
+  statistics_.final_in_leaves = counts_.final_in_leaves;
+  statistics_.final_in_tiles = counts_.final_in_tiles;
+  statistics_.retriangulated = counts_.retriangulated;
+  statistics_.border_simplices = counts_.borders.most_simplices();
+  statistics_.border_bytes = counts_.borders.most_bytes();
   for (std::size_t s = 0; s < kStageNames.size(); ++s) {
-    figures_.stages.push_back({kStageNames[s], counts_.times.seconds(static_cast<Stage>(s))});
+    statistics_.stages.push_back({kStageNames[s], counts_.times.seconds(static_cast<Stage>(s))});
   }
-  return std::move(figures_);
+  return std::move(statistics_);
 }
 
 template class TileEngine<2>;
 template class TileEngine<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -33,11 +33,11 @@
 #include "stream/triangulate/tile_triangulation.h"
 #include "stream/triangulate/work_lanes.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What is known of the points to come.
 struct ExpectedPoints {
-  std::optional<Lattice> lattice{};
+  std::optional<IntegerLattice> lattice{};
   std::optional<std::uint64_t> count{};  ///< about how many
   std::optional<Box<3>> extent{};        ///< where they will lie
   bool ordered_by_index = false;         ///< they come in any order, with an index that tells
@@ -121,10 +121,10 @@ class TileEngine : private DealingWatch {
     return sequencer_.number_of(place);
   }
   /// The open facets of the sink's stream, where simplices are left out.
-  [[nodiscard]] const OpenFacets<D>& open_facets() const { return sequencer_.open_facets(); }
+  [[nodiscard]] const UnpairedFacets<D>& open_facets() const { return sequencer_.open_facets(); }
 
   /// Of all that has been done; to be called once, at the end.
-  [[nodiscard]] RunFigures figures();
+  [[nodiscard]] RunStatistics statistics();
   [[nodiscard]] std::vector<TaskSum> task_sums() const { return tasks_.sums(); }
 
  private:
@@ -200,9 +200,9 @@ class TileEngine : private DealingWatch {
   TaskSums tasks_;
   BorderGrowth<D> growth_;
   SampleForecast<D> sample_;
-  std::mutex tell_mutex_;     ///< held while the trace is told a node
-  std::mutex figures_mutex_;  ///< guards the next one
-  RunFigures figures_;
+  std::mutex tell_mutex_;        ///< held while the trace is told a node
+  std::mutex statistics_mutex_;  ///< guards the next one
+  RunStatistics statistics_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

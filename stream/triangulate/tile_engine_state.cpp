@@ -6,7 +6,7 @@
 #include "formats/state/state_writer.h"
 #include "stream/triangulate/tile_engine.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Not before one whose tile has left the tree, nor where blocks of a later one wait for its own.
 template <int D>
@@ -46,8 +46,8 @@ template <int D>
 template <typename State>
 void TileEngine<D>::state(State& state) {
   state.section("engine");
-  state(span_, seen_, counts_, figures_.final_by_level, figures_.first_block_read_points,
-        figures_.divided_points, tree_, sequencer_, root_, complete_cells_);
+  state(span_, seen_, counts_, statistics_.final_by_level, statistics_.first_block_read_points,
+        statistics_.divided_points, tree_, sequencer_, root_, complete_cells_);
   if (State::kReads || forest_.empty()) {  // those of before are still to be added
     state(nodes_before_);
     has_restored_cells_ = State::kReads || has_restored_cells_;
@@ -73,4 +73,4 @@ template void TileEngine<3>::add_restored_cells();
 template void TileEngine<3>::state(StateReader&);
 template void TileEngine<3>::state(StateWriter&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

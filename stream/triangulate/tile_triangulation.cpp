@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "src/delaunay/base_case/base_case.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/border/point_search.h"
-#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/division/filled_share.h"
 #include "src/delaunay/division/point_tree.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/leaf_border.h"
 #include "stream/triangulate/merge_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -85,18 +85,18 @@ MergedBorder<D> merge_resident(const TileContext<D>& context, std::span<Border<D
 }
 
 /// The lease of a leaf, or of a merge inside of a tile. When it has grown, the memory that base
-/// cases keep goes at its end: of what is more than leaves of `leaf_size` points need.
+/// cases keep goes at its end: of what is more than leaves of `leaf_points` points need.
 template <int D>
 class WorkingMemory {
  public:
-  WorkingMemory(WorkLease lease, std::size_t leaf_size)
-      : lease_(std::move(lease)), leaf_size_(leaf_size) {}
+  WorkingMemory(WorkLease lease, std::size_t leaf_points)
+      : lease_(std::move(lease)), leaf_points_(leaf_points) {}
   ~WorkingMemory() { give_back(); }
   WorkingMemory(const WorkingMemory&) = delete;
   WorkingMemory& operator=(const WorkingMemory&) = delete;
 
   void give_back() {
-    if (lease_.grown()) release_base_case_memory_above<D>(leaf_size_);
+    if (lease_.grown()) release_base_case_memory_above<D>(leaf_points_);
     lease_ = {};
   }
 
@@ -104,7 +104,7 @@ class WorkingMemory {
 
  private:
   WorkLease lease_;
-  std::size_t leaf_size_;
+  std::size_t leaf_points_;
 };
 
 /// Which simplices of a merged border are final: nothing around it may change them. There are so
@@ -132,7 +132,7 @@ Settled<D> settle_merged(MergedBorder<D>& merged, BlockPlace block, const Output
                            kStepsOfOne * std::max<std::size_t>(end - begin, points / grains));
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return fresh[begin + s]; }, positions,
-        [&](std::size_t first, const RegionBatch<D>& regions) {
+        [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
           const std::size_t at = merged.tested + begin + first;
           const std::uint64_t changed =
               search.may_change(regions, tells_exposure ? &exposure[at] : nullptr);
@@ -174,7 +174,7 @@ class TileRun {
     {
       const StageTimer timer(counts_.times, Stage::kDivide);
       root_ = divide<D>(tile_.points, input_index_,
-                        {.leaf_size = context_.leaf_points,
+                        {.leaf_points = context_.leaf_points,
                          .scheme = context_.asked.division,
                          .children = context_.asked.children,
                          .stop = {},
@@ -421,4 +421,4 @@ template Border<3> triangulate_tile(const TileContext<3>&, TileInput<3>, Task&);
 template MergedTiles<2> merge_tiles(const TileContext<2>&, const MergeInput<2>&, Task&);
 template MergedTiles<3> merge_tiles(const TileContext<3>&, const MergeInput<3>&, Task&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

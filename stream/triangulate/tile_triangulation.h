@@ -21,7 +21,7 @@
 #include "stream/triangulate/settle.h"
 #include "stream/triangulate/surroundings.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Sets `most` to `now` if that is more; for any thread.
 template <typename Number>
@@ -144,4 +144,4 @@ Border<D> triangulate_tile(const TileContext<D>& context, TileInput<D> tile, Tas
 template <int D>
 MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& input, Task& task);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -11,7 +11,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Works off what is ready, in the order in which it was added, on several *lanes* at a time: as
 /// many as there are threads and room for. Each node has a weight; at most `room` of it is under
@@ -189,4 +189,4 @@ class WorkLanes {
   unsigned lanes_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -73,4 +73,4 @@ Timing time_cgal_parallel(std::span<const Point<3>> points, unsigned threads) {
   return timing;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

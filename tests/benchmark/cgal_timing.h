@@ -7,7 +7,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// Adds the processor time that the calling thread takes between its construction and its
 /// destruction. Other programs on the same cores disturb it less than the time of day.
@@ -44,4 +44,4 @@ Timing time_cgal_sequential(std::span<const Point<D>> points);
 /// points.
 Timing time_cgal_parallel(std::span<const Point<3>> points, unsigned threads);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace spillway::detail {
+namespace spillway::test {
 
 ProcessFigures run_program(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
@@ -39,4 +39,4 @@ ProcessFigures run_program(const std::vector<std::string>& words) {
           .peak_mib = static_cast<double>(usage.ru_maxrss) / 1024};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

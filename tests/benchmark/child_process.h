@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// What a program and all programs that it has started and waited for took.
 struct ProcessFigures {
@@ -15,4 +15,4 @@ struct ProcessFigures {
 /// Runs a program (its path, its arguments) to its end; ends this one if that fails.
 ProcessFigures run_program(const std::vector<std::string>& words);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

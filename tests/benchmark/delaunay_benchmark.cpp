@@ -24,7 +24,7 @@
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Plan {
@@ -34,7 +34,7 @@ struct Plan {
   std::uint64_t points_on_lines_3d = 3'000;
   unsigned repetitions = 3;
   unsigned threads = 2;
-  std::size_t base_case_size = 0;
+  std::size_t leaf_points = 0;
   unsigned children = 2;
   std::vector<std::size_t> simulated_base_cases{262'144, 65'536, 16'384, 4'096};
   unsigned simulated_cores = 1'024;
@@ -73,12 +73,12 @@ void give_back_memory(const Plan& plan) {
 
 /// Leaves its memory to the next run.
 template <int D>
-Timing time_ours(std::span<const Point<D>> points, const DelaunayOptions& options) {
+Timing time_ours(std::span<const Point<D>> points, const DivideAndConquerOptions& options) {
   Timing timing{};
   Triangulation<D> triangulation;
   {
     const Stopwatch watch(timing.seconds);
-    triangulation = delaunay<D>(points, options);
+    triangulation = delaunay_triangulation<D>(points, options);
   }
   timing.simplices = triangulation.finite_count();
   recycle(std::move(triangulation));
@@ -95,7 +95,7 @@ std::string simulate(const std::string& family, std::span<const Point<D>> points
   for (std::size_t r = 0; r < runs.size(); ++r) {
     give_back_memory(plan);
     time_ours<D>(points, {.threads = 1,
-                          .base_case_size = plan.simulated_base_cases[r],
+                          .leaf_points = plan.simulated_base_cases[r],
                           .children = plan.children,
                           .tasks = &runs[r]});
   }
@@ -134,8 +134,7 @@ std::size_t take_turn(std::span<const Point<D>> points, const Plan& plan, Times&
   };
   const auto ours = [&](unsigned threads) {
     return time_ours<D>(
-        points,
-        {.threads = threads, .base_case_size = plan.base_case_size, .children = plan.children});
+        points, {.threads = threads, .leaf_points = plan.leaf_points, .children = plan.children});
   };
   run(&Times::cgal, [&] { return time_cgal_sequential<D>(points); });
   if constexpr (D == 3) {
@@ -152,7 +151,7 @@ std::string compare(const std::string& family, const Plan& plan) {
   const GeneratorOptions generate{.family = family_by_name(family),
                                   .count = quadratic ? plan.points_on_lines_3d : plan.points,
                                   .dimension = D};
-  const std::vector<Point<D>> points = generate_points<D>(generate);
+  const std::vector<Point<D>> points = generated_points<D>(generate);
   const double n = static_cast<double>(points.size()) * 1e-6;
   Times fresh, reused;
   std::size_t simplices = 0;
@@ -177,10 +176,10 @@ std::string compare(const std::string& family, const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Times CGAL's Delaunay triangulations and ours in turns");
   app.add_option("--families", plan.families, "Families of points")->delimiter(',');
   app.add_option("--dims", plan.dimensions, "Dimensions")->delimiter(',');
@@ -188,7 +187,7 @@ int main(int argc, char** argv) {
   app.add_option("--points-on-lines-3d", plan.points_on_lines_3d, "Points of lines in 3D");
   app.add_option("-r,--repetitions", plan.repetitions, "Turns; medians are printed");
   app.add_option("--threads", plan.threads, "Threads of the parallel runs");
-  app.add_option("--base-case", plan.base_case_size, "Largest base case, 0: default");
+  app.add_option("--leaf-points", plan.leaf_points, "Largest base case, 0: default");
   app.add_option("--children", plan.children, "Parts merged at a time");
   app.add_option("--simulate", plan.simulated_base_cases,
                  "Sizes of base cases to simulate more cores with; one of 0 to leave it")
@@ -212,8 +211,8 @@ int main(int argc, char** argv) {
   std::string simulated;
   for (const int dimension : plan.dimensions) {
     for (const std::string& family : plan.families) {
-      simulated += dimension == 2 ? spillway::detail::compare<2>(family, plan)
-                                  : spillway::detail::compare<3>(family, plan);
+      simulated += dimension == 2 ? spillway::test::compare<2>(family, plan)
+                                  : spillway::test::compare<3>(family, plan);
     }
   }
   if (plan.simulated_base_cases.empty()) return 0;

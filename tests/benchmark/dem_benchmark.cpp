@@ -14,7 +14,7 @@
 
 #include "src/delaunay/common/schedule.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Plan {
@@ -62,8 +62,8 @@ void write_table(const Plan& plan) {
 
 void compare(const Plan& plan, std::uint64_t count) {
   const std::string& folder = plan.folder;
-  const std::string common =
-      fmt::format("-q --memory {} --threads {} --tmpdir {}", plan.memory, plan.threads, folder);
+  const std::string common = fmt::format("-q --memory {} --threads {} --scratch-folder {}",
+                                         plan.memory, plan.threads, folder);
   time_of(fmt::format("{} generate -q terrain -n {} -o {}/dem.las", plan.command, count, folder));
   const bool with_gdal = count <= plan.most_for_gdal;
   if (with_gdal) write_table(plan);
@@ -104,10 +104,10 @@ void compare(const Plan& plan, std::uint64_t count) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Times `spillway dem` beside `gdal_grid -a linear`");
   app.add_option("--command", plan.command, "The spillway to run");
   app.add_option("--folder", plan.folder, "Where all files lie");
@@ -121,5 +121,5 @@ int main(int argc, char** argv) {
   fmt::print(
       "| points | pixels | triangulate us/pt | dem us/pt | dem / triangulate | gdal_grid us/pt | "
       "gdal_grid / dem |\n|---|---|---|---|---|---|---|\n");
-  for (const std::uint64_t count : plan.points) spillway::detail::compare(plan, count);
+  for (const std::uint64_t count : plan.points) spillway::test::compare(plan, count);
 }

@@ -17,7 +17,7 @@
 #include "formats/disk/file_system.h"
 #include "tests/formats/points/copc/encoded_files.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Plan {
@@ -28,8 +28,8 @@ struct Plan {
 };
 
 void encode(const std::string& path, const Plan& plan) {
-  const testing::EncodedPoints points = testing::read_points_to_encode(path);
-  const std::string bytes = plan.copc ? testing::copc_bytes(points) : testing::laz_bytes(points);
+  const test::EncodedPoints points = test::read_points_to_encode(path);
+  const std::string bytes = plan.copc ? test::copc_bytes(points) : test::laz_bytes(points);
   const std::filesystem::path name = std::filesystem::path(path).stem();
   const auto file = disk().create(std::filesystem::path(plan.folder) /
                                   (name.string() + (plan.copc ? ".copc.laz" : ".laz")));
@@ -59,10 +59,10 @@ void run(const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Writes files of points on a lattice as LAZ or COPC, one for each");
   app.add_option("FILE", plan.files, "LAS, or another format with a lattice")->required();
   app.add_option("--output-dir", plan.folder, "Folder of the files, which must be there")
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
   app.add_option("--threads", plan.threads, "Files at a time")->check(CLI::Range(1, 256));
   CLI11_PARSE(app, argc, argv);
   try {
-    spillway::detail::run(plan);
+    spillway::test::run(plan);
   } catch (const std::exception& error) {
     fmt::print(stderr, "encoded_points: {}\n", error.what());
     return 1;

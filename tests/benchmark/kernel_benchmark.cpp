@@ -23,7 +23,7 @@
 #include "src/parallel/parallel.h"
 #include "tests/benchmark/cgal_timing.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -100,7 +100,7 @@ Points<D> make_points(const std::string& set, std::size_t count) {
     if (set == "integers") return random_integers(count);
     if (set == "sphere") return make_points<3>("circle", count);
   }
-  Points<D> points = generate_points<D>({.family = family_by_name(set), .count = count});
+  Points<D> points = generated_points<D>({.family = family_by_name(set), .count = count});
   if (set == "lattice") shuffle<D>(points);
   return points;
 }
@@ -170,7 +170,7 @@ void compare(const std::string& set, std::size_t count, unsigned repetitions) {
     const Timing reference = time_cgal_sequential<D>(points);
     const Timing ours = run_own<D>(points, false).timing;
     if (ours.simplices != reference.simplices) {
-      throw Error(
+      throw Failure(
           fmt::format("{}: {} simplices, CGAL has {}", set, ours.simplices, reference.simplices));
     }
     cgal.push_back(reference.processor_seconds);
@@ -191,7 +191,7 @@ std::vector<std::string> usual_sets(int dimension) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
   int dimension = 2;
@@ -211,14 +211,14 @@ int main(int argc, char** argv) {
                  "In space: 2 for SSE2, 4 for AVX2, 8 for AVX-512's registers, too")
       ->check(CLI::IsMember({2, 4, 8}));
   CLI11_PARSE(app, argc, argv);
-  if (sets.empty()) sets = spillway::detail::usual_sets(dimension);
+  if (sets.empty()) sets = spillway::test::usual_sets(dimension);
   if (counts.empty()) {
     counts = {50'000, 100'000, dimension == 2 ? std::size_t{200'000} : 300'000, 1'000'000};
   }
-  spillway::detail::limit_lanes(vectors);
+  spillway::delaunay::limit_lanes(vectors);
   try {
     if (dimension == 3) {
-      const int width = spillway::detail::lane_width();
+      const int width = spillway::delaunay::lane_width();
       fmt::print("{}\n\n", width == 8   ? "AVX2 with the registers of AVX-512"
                            : width == 4 ? "AVX2"
                                         : "SSE2");
@@ -226,15 +226,15 @@ int main(int argc, char** argv) {
     fmt::print(
         "| points | n | CGAL us a point | ours us a point | CGAL / ours | bytes a point |\n"
         "|---|---|---|---|---|---|\n");
-    spillway::detail::with_threads(1, [&] {  // whose processor time is measured
+    spillway::parallel::with_threads(1, [&] {  // whose processor time is measured
       for (const std::string& set : sets) {
         for (const std::size_t count : counts) {
-          dimension == 2 ? spillway::detail::compare<2>(set, count, repetitions)
-                         : spillway::detail::compare<3>(set, count, repetitions);
+          dimension == 2 ? spillway::test::compare<2>(set, count, repetitions)
+                         : spillway::test::compare<3>(set, count, repetitions);
         }
       }
     });
-  } catch (const spillway::detail::Error& error) {
+  } catch (const spillway::runtime::Failure& error) {
     fmt::print(stderr, "kernel_benchmark: {}\n", error.what());
     return 1;
   }

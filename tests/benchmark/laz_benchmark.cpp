@@ -28,7 +28,7 @@
 #include "src/error.h"
 #include "tests/formats/points/laz/laz_encoder/decoded_records.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Plan {
@@ -126,7 +126,7 @@ Chunks chunks_of(const std::string& file) {
   InputBytes source(disk().open(file));
   const LasHeader las = read_las_header(source);
   const std::optional<LazChunkTable> table = las.laz ? read_chunk_table(source, las) : std::nullopt;
-  if (!table) throw Error(fmt::format("{} has no chunks of LAZ", file));
+  if (!table) throw Failure(fmt::format("{} has no chunks of LAZ", file));
   Chunks chunks{.format = las.laz->format, .chunks = {}};
   for (const LazChunk& place : table->chunks) {
     Chunks::Chunk& chunk = chunks.chunks.emplace_back();
@@ -142,10 +142,10 @@ Chunks chunks_of(const std::string& file) {
 /// Decodes as a reader does, with one decoder for all chunks; gives the records of each chunk.
 std::vector<std::string> decode(const Chunks& chunks) {
   LazChunkDecoder decoder(chunks.format, LazDetail::kRecords);
-  const std::size_t length = testing::record_length_of(chunks.format);
+  const std::size_t length = test::record_length_of(chunks.format);
   std::vector<std::string> records;
   for (const Chunks::Chunk& chunk : chunks.chunks) {
-    records.push_back(testing::decode_laz_records(decoder, length, chunk.bytes, chunk.count));
+    records.push_back(test::decode_laz_records(decoder, length, chunk.bytes, chunk.count));
   }
   return records;
 }
@@ -191,7 +191,7 @@ void print_records_table(const Plan& plan) {
         median_speed_of(plan, chunks.points, [&] { encode(chunks.format, records); });
     fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} |\n",
                std::filesystem::path(file).filename().string(), chunks.points,
-               testing::record_length_of(chunks.format), decoding, encoding,
+               test::record_length_of(chunks.format), decoding, encoding,
                static_cast<double>(bytes) / static_cast<double>(bytes_before));
   }
 }
@@ -211,10 +211,10 @@ void print_table(const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Times the reading of LAZ and other point files, and whole records of LAZ");
   app.add_option("files", plan.files)->required();
   app.add_option("-r,--repetitions", plan.repetitions)->check(CLI::Range(1, 1000));
@@ -226,11 +226,11 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     if (plan.records) {
-      spillway::detail::print_records_table(plan);
+      spillway::test::print_records_table(plan);
     } else {
-      spillway::detail::print_table(plan);
+      spillway::test::print_table(plan);
     }
-  } catch (const spillway::detail::Error& error) {
+  } catch (const spillway::runtime::Failure& error) {
     fmt::print(stderr, "laz_benchmark: {}\n", error.what());
     return 1;
   }

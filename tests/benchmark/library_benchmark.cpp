@@ -22,7 +22,7 @@
 #include "src/generators/generators.h"
 #include "tests/benchmark/cgal_timing.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -107,7 +107,7 @@ void time_cgal(const Plan& plan, const std::string& family, const std::vector<Po
 template <int D>
 void time_family(const Plan& plan, const std::string& family) {
   const auto generate = [&](std::uint64_t count, std::uint64_t seed) {
-    return generate_points<D>({family_by_name(family), count, D, seed});
+    return generated_points<D>({family_by_name(family), count, D, seed});
   };
   const std::vector<Point<D>> points = generate(plan.points, 1);
   const std::vector<Point<D>> places = generate(plan.places, 2);
@@ -115,13 +115,13 @@ void time_family(const Plan& plan, const std::string& family) {
   std::vector<double> values(points.size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = points[i][0];
   for (const unsigned threads : plan.threads) {
-    const spillway::DelaunayOptions options{.threads = threads};
+    const DelaunayOptions options{.threads = threads};
     const auto time = [&](std::size_t items, const auto& work) {
       return threads == 1 ? median_microseconds<ProcessorStopwatch>(plan, items, work)
                           : median_microseconds<Stopwatch>(plan, items, work);
     };
-    const double engine =
-        time(points.size(), [&] { return delaunay<D>(points, {.threads = threads}); });
+    const double engine = time(
+        points.size(), [&] { return delaunay_triangulation<D>(points, {.threads = threads}); });
     const double construction =
         time(points.size(), [&] { const Delaunay<D> mesh(points, options); });
     const Delaunay<D> mesh(points, options);
@@ -140,10 +140,10 @@ void time_family(const Plan& plan, const std::string& family) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Times meshes in memory and questions to them, ours and CGAL's");
   app.add_option("--dims", plan.dimensions, "Dimensions")->delimiter(',');
   app.add_option("--families", plan.families, "Families of points and places")->delimiter(',');
@@ -159,8 +159,8 @@ int main(int argc, char** argv) {
       "| circumcentres |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int dimension : plan.dimensions) {
     for (const std::string& family : plan.families) {
-      dimension == 2 ? spillway::detail::time_family<2>(plan, family)
-                     : spillway::detail::time_family<3>(plan, family);
+      dimension == 2 ? spillway::test::time_family<2>(plan, family)
+                     : spillway::test::time_family<3>(plan, family);
     }
   }
 }

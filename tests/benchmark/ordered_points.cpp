@@ -23,7 +23,7 @@
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kBlockPoints = 65536;
@@ -56,7 +56,7 @@ struct PlaceBox {
 
 struct Places {
   std::vector<Place> points;
-  Lattice lattice;
+  IntegerLattice lattice;
   int coordinates = 3;
 };
 
@@ -258,11 +258,11 @@ void run(const Plan& plan) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  using spillway::detail::Order;
-  spillway::detail::Plan plan;
+  using spillway::test::Order;
+  spillway::test::Plan plan;
   CLI::App app("Writes the same points in an order of choice, as spp");
   app.add_option("family", plan.family, "terrain, or another family of integers");
   app.add_option("-n,--points", plan.count, "How many, as 150e6")
@@ -279,8 +279,8 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", plan.output, "A file or a named pipe; -: standard output");
   CLI11_PARSE(app, argc, argv);
   try {
-    spillway::detail::run(plan);
-  } catch (const spillway::detail::Error& error) {
+    spillway::test::run(plan);
+  } catch (const spillway::runtime::Failure& error) {
     fmt::print(stderr, "ordered_points: {}\n", error.what());
     return 1;
   }

@@ -16,7 +16,7 @@
 #   --check          prove the first mesh of each set of equal hashes with spillway check, its points and the same memory
 #   --threads N      of spillway; 0: all there are [0]
 #   --limit SECONDS  a run that takes longer is ended, with exit code 124 [3600]
-#   --tmpdir DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
+#   --scratch-folder DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
 #   --driver FILE    the ordered_points to run [beside SPILLWAY]
 #
 # The exit code is 1 if a run failed, hashes differ, or a mesh is not proved.
@@ -46,7 +46,7 @@ while [ $# -gt 1 ]; do
     --orders) orders=${2//,/ } ;;
     --threads) threads=$2 ;;
     --limit) limit=$2 ;;
-    --tmpdir) tmpdir=$2 ;;
+    --scratch-folder) tmpdir=$2 ;;
     --driver) driver=$2 ;;
     --told) told=(--told); shift; continue ;;
     --check) check=yes; shift; continue ;;
@@ -75,7 +75,7 @@ figure() {
 triangulate() {
   rm -f "$folder/stats.json" "$folder/out.spm"
   /usr/bin/time -q -f '%e %U %S %M' -o "$folder/time" timeout "$limit" "$spillway" triangulate -q "$1" \
-    -o "$folder/out.spm" --memory "$memory" --threads "$threads" --tmpdir "$folder" --stats "$folder/stats.json" \
+    -o "$folder/out.spm" --memory "$memory" --threads "$threads" --scratch-folder "$folder" --stats "$folder/stats.json" \
     < "${2:-/dev/null}"
 }
 
@@ -139,7 +139,7 @@ prove() {
   if [ -z "$check" ] || [ -z "$hash" ] || [ -n "${seen[$hash]-}" ]; then return; fi
   seen[$hash]=yes
   /usr/bin/time -q -f '%e %M' -o "$folder/time" timeout "$limit" "$spillway" check -q "$folder/out.spm" \
-    --points "$folder/points.spp" --memory "$memory" --threads "$threads" --tmpdir "$folder" > "$folder/proof" 2>&1
+    --points "$folder/points.spp" --memory "$memory" --threads "$threads" --scratch-folder "$folder" > "$folder/proof" 2>&1
   code=$?
   read -r seconds kilobytes < "$folder/time"
   if [ "$code" -eq 0 ]; then

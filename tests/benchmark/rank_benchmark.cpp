@@ -19,7 +19,7 @@
 
 namespace {
 
-using namespace spillway::detail;
+using namespace spillway::test;
 using Json = nlohmann::json;
 
 void compare_with_threads(const Plan& plan) {
@@ -95,9 +95,9 @@ void sweep(const Plan& plan) {
       std::vector<double> seconds;
       double peak = 0;
       for (unsigned turn = 0; turn < plan.turns; ++turn) {
-        const ProcessFigures figures = run_ranks(plan, ranks, product / ranks);
-        cpu_seconds.push_back(figures.cpu_seconds);
-        seconds.push_back(figures.seconds);
+        const ProcessFigures used = run_ranks(plan, ranks, product / ranks);
+        cpu_seconds.push_back(used.cpu_seconds);
+        seconds.push_back(used.seconds);
         peak = std::max(peak, sum(statistics(plan).at("ranks").at("each"), "peak_rss_bytes"));
       }
       fmt::print("| {} x {} | {} | {:.2f} | {:.2f} | {:.0f} |\n", ranks, product / ranks, points,

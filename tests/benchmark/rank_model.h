@@ -4,7 +4,7 @@
 
 #include "tests/benchmark/rank_runs.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// What cannot be measured on one machine.
 struct Network {
@@ -12,8 +12,8 @@ struct Network {
   double latency = 5e-6;          ///< seconds a message
 };
 
-/// Prints the figures that the model takes from `runs`, the first of one rank and the last of most
+/// Prints the statistics that the model takes from `runs`, the first of one rank and the last of most
 /// ranks, and what it makes of them for up to 2,048 ranks: docs/performance.md derives it.
 void print_model(const Plan& plan, const std::vector<RankRun>& runs, const Network& network);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -22,15 +22,22 @@ std::string mesh_of(const Plan& plan) { return plan.folder + "/benchmark.spm"; }
 std::string statistics_of(const Plan& plan) { return plan.folder + "/benchmark.json"; }
 
 std::vector<std::string> triangulate(const Plan& plan, int threads) {
-  return {
-      plan.command, "triangulate",
-      "-q",         input_of(plan),
-      "-o",         mesh_of(plan),
-      "--dim",      std::to_string(plan.dimension),
-      "--memory",   fmt::format("{}K", plan.memory * static_cast<std::uint64_t>(threads) / 1024),
-      "--threads",  std::to_string(threads),
-      "--stats",    statistics_of(plan),
-      "--tmpdir",   plan.folder};
+  return {plan.command,
+          "triangulate",
+          "-q",
+          input_of(plan),
+          "-o",
+          mesh_of(plan),
+          "--dim",
+          std::to_string(plan.dimension),
+          "--memory",
+          fmt::format("{}K", plan.memory * static_cast<std::uint64_t>(threads) / 1024),
+          "--threads",
+          std::to_string(threads),
+          "--stats",
+          statistics_of(plan),
+          "--scratch-folder",
+          plan.folder};
 }
 
 /// Points of a rank with which a run is little but its start.
@@ -171,4 +178,4 @@ void remove_files(const Plan& plan) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

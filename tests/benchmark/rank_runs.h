@@ -7,7 +7,7 @@
 
 #include "tests/benchmark/child_process.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 inline constexpr double kMiB = 1024.0 * 1024.0;
 
@@ -89,4 +89,4 @@ RankRun measure(const Plan& plan, int ranks);
 /// Removes the files of all runs.
 void remove_files(const Plan& plan);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -21,7 +21,7 @@
 #include "tests/benchmark/cgal_timing.h"
 #include "tests/benchmark/child_process.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Plan {
@@ -63,7 +63,7 @@ double copy(const std::string& from, const std::string& to, std::uint64_t bytes)
 template <int D>
 double time_reference(const Plan& plan, std::uint64_t count) {
   const auto points =
-      generate_points<D>({.family = family_by_name(plan.family), .count = count, .dimension = D});
+      generated_points<D>({.family = family_by_name(plan.family), .count = count, .dimension = D});
   return time_cgal_sequential<D>(points).seconds / static_cast<double>(points.size());
 }
 
@@ -89,16 +89,27 @@ void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
     const std::uint64_t reference_count = plan.reference_points > 0 ? plan.reference_points : count;
     reference.push_back(plan.dimension == 2 ? time_reference<2>(plan, reference_count)
                                             : time_reference<3>(plan, reference_count));
-    std::vector<std::string> words = {
-        plan.command, "triangulate", "-q",        input,
-        "-o",         output,        "--dim",     std::to_string(plan.dimension),
-        "--memory",   memory,        "--threads", std::to_string(plan.threads),
-        "--stats",    stats,         "--tmpdir",  plan.folder};
+    std::vector<std::string> words = {plan.command,
+                                      "triangulate",
+                                      "-q",
+                                      input,
+                                      "-o",
+                                      output,
+                                      "--dim",
+                                      std::to_string(plan.dimension),
+                                      "--memory",
+                                      memory,
+                                      "--threads",
+                                      std::to_string(plan.threads),
+                                      "--stats",
+                                      stats,
+                                      "--scratch-folder",
+                                      plan.folder};
     words.insert(words.end(), plan.more.begin(), plan.more.end());
-    const ProcessFigures figures = run_program(words);
-    ours.push_back(figures.seconds / static_cast<double>(count));
-    peak = std::max(peak, figures.peak_mib);
-    cpu = figures.cpu_seconds;
+    const ProcessFigures statistics = run_program(words);
+    ours.push_back(statistics.seconds / static_cast<double>(count));
+    peak = std::max(peak, statistics.peak_mib);
+    cpu = statistics.cpu_seconds;
     last = nlohmann::json::parse(std::ifstream(stats));
     const auto spilled = last["spilled_bytes"].get<std::uint64_t>();
     disk.push_back((copy(input, "", std::filesystem::file_size(input)) +
@@ -130,10 +141,10 @@ void compare(const Plan& plan, std::uint64_t count, const std::string& memory) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  spillway::detail::Plan plan;
+  spillway::test::Plan plan;
   CLI::App app("Times the whole command beside CGAL's insertion in memory and plain copies");
   app.add_option("--command", plan.command, "The spillway to run");
   app.add_option("--folder", plan.folder, "Where input, output and scratch files lie");
@@ -153,7 +164,6 @@ int main(int argc, char** argv) {
       "tiles | writes/pt | spill B/pt | mesh B/pt | border | of simplices | copies us/pt | ours / "
       "copies |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t i = 0; i < plan.points.size(); ++i) {
-    spillway::detail::compare(plan, plan.points[i],
-                              plan.memory[std::min(i, plan.memory.size() - 1)]);
+    spillway::test::compare(plan, plan.points[i], plan.memory[std::min(i, plan.memory.size() - 1)]);
   }
 }

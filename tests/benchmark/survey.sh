@@ -19,7 +19,7 @@
 #   --threads N      of spillway; 0: all there are [0]
 #   --runs N         of each command and input [1]
 #   --limit SECONDS  a run that takes longer is ended, with exit code 124 [3600]
-#   --tmpdir DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
+#   --scratch-folder DIR     where a folder for files is made, and removed at the end [$TMPDIR, else /tmp]
 #   --encoder FILE   the encoded_points that makes LAZ and COPC [beside the last SPILLWAY, which makes the other inputs]
 #
 # The exit code is 1 if a run failed or hashes differ.
@@ -56,7 +56,7 @@ while [[ ${1-} == -* ]]; do
     --threads) threads=$2 ;;
     --runs) runs=$2 ;;
     --limit) limit=$2 ;;
-    --tmpdir) tmpdir=$2 ;;
+    --scratch-folder) tmpdir=$2 ;;
     --encoder) encoder=$2 ;;
     *) usage ;;
   esac
@@ -99,7 +99,7 @@ figure() {
 triangulate() {
   rm -f "$folder/stats.json" "$folder/first"
   /usr/bin/time -q -f '%e %U %S %M' -o "$folder/time" timeout "$limit" "${commands[$1]}" triangulate -q "$2" \
-    -o "${3:-$folder/out.spm}" --memory "$memory" --threads "$threads" --tmpdir "$folder" --stats "$folder/stats.json"
+    -o "${3:-$folder/out.spm}" --memory "$memory" --threads "$threads" --scratch-folder "$folder" --stats "$folder/stats.json"
 }
 
 # Reads a mesh from a pipe, and keeps the time at which its first bytes came.
@@ -180,7 +180,7 @@ if [ -n "$whole" ]; then
 fi
 for format in $formats; do
   if [ "$format" = spp ]; then
-    "$maker" convert -q --sorted "$folder/las" -o "$folder/sorted.spp" --memory "$memory" --tmpdir "$folder" || exit 1
+    "$maker" convert -q --sorted "$folder/las" -o "$folder/sorted.spp" --memory "$memory" --scratch-folder "$folder" || exit 1
     measure "spp, sorted, a pipe" "$folder/sorted.spp" piped
     rm "$folder/sorted.spp"
     continue

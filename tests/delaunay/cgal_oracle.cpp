@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -83,4 +83,4 @@ template std::vector<std::array<VertexId, 4>> cgal_simplices<3>(std::span<const 
 template std::size_t cgal_hull_facets<2>(std::span<const Point<2>>);
 template std::size_t cgal_hull_facets<3>(std::span<const Point<3>>);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

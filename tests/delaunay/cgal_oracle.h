@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// The finite simplices of CGAL's Delaunay triangulation of all points, each as sorted input
 /// indices (of equal points the lowest), the whole list sorted. Empty if the points span fewer
@@ -18,4 +18,4 @@ std::vector<std::array<VertexId, D + 1>> cgal_simplices(std::span<const Point<D>
 template <int D>
 std::size_t cgal_hull_facets(std::span<const Point<D>> points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 
 #include "tests/delaunay/kernel_sets.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -33,7 +33,7 @@ int compare(double seconds, std::uint64_t count, std::uint64_t seed) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
   int dimension = 2;
@@ -46,6 +46,6 @@ int main(int argc, char** argv) {
   app.add_option("--sets", count, "How many sets, instead of how long");
   app.add_option("--seed", seed, "Of the first set; each next one has the next");
   CLI11_PARSE(app, argc, argv);
-  return dimension == 2 ? spillway::detail::compare<2>(seconds, count, seed)
-                        : spillway::detail::compare<3>(seconds, count, seed);
+  return dimension == 2 ? spillway::test::compare<2>(seconds, count, seed)
+                        : spillway::test::compare<3>(seconds, count, seed);
 }

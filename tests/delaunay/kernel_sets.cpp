@@ -16,7 +16,7 @@
 #include "tests/delaunay/cgal_oracle.h"
 #include "tests/delaunay/verify.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -244,4 +244,4 @@ template std::vector<Point<3>> hard_set<3>(std::uint64_t);
 template std::string compare_kernel_with_cgal<2>(std::span<const Point<2>>, std::uint64_t);
 template std::string compare_kernel_with_cgal<3>(std::span<const Point<3>>, std::uint64_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_common/lane_width.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// Limits the lanes of the kernels for the length of its life.
 class LaneLimit {
@@ -31,4 +31,4 @@ std::vector<Point<D>> hard_set(std::uint64_t seed);
 template <int D>
 std::string compare_kernel_with_cgal(std::span<const Point<D>> points, std::uint64_t seed);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

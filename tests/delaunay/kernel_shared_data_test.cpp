@@ -10,7 +10,7 @@
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/formats/shared_data.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 /// Of larger files as many are taken.
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(Files, KernelsOfSharedFile,
                          });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -1,12 +1,12 @@
 add_library(cgal_oracle STATIC delaunay/cgal_oracle.cpp)
-target_link_libraries(cgal_oracle PUBLIC spillway_build PRIVATE CGAL::CGAL)
+target_link_libraries(cgal_oracle PUBLIC spillway_build spillway_headers PRIVATE CGAL::CGAL)
 
 spillway_test(delaunay_unit_test unit
   SOURCES delaunay/base_case/affine_basis_test.cpp delaunay/base_case/base_case_test.cpp
           delaunay/border/acceptance_test.cpp delaunay/border/conflict_region_test.cpp
           delaunay/border/exposure_test.cpp delaunay/border/facing_sides_test.cpp
           delaunay/border/find_border_test.cpp delaunay/border/merge_test.cpp
-          delaunay/border/point_search_test.cpp delaunay/border/region_batch_test.cpp
+          delaunay/border/point_search_test.cpp delaunay/border/conflict_region_batch_test.cpp
           delaunay/border/run_boxes_test.cpp delaunay/border/simplex_index_test.cpp
           delaunay/common/hash_test.cpp delaunay/common/schedule_test.cpp
           delaunay/common/working_memory_test.cpp

@@ -5,7 +5,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kMostFaults = 10;
@@ -127,7 +127,7 @@ class Verifier {
         (D == 2 ? static_cast<std::int64_t>(simplices)
                 : static_cast<std::int64_t>(facets) - static_cast<std::int64_t>(simplices));
     if (euler != (D == 2 ? 2 : 0)) fault("Euler's relation fails: " + std::to_string(euler));
-    for (const Duplicate& d : t_.duplicates) {
+    for (const DroppedDuplicate& d : t_.duplicates) {
       if (used.count(d.dropped) != 0 || used.count(d.kept) == 0 ||
           t_.points[d.dropped] != t_.points[d.kept] ||
           t_.input_index[d.dropped] < t_.input_index[d.kept]) {
@@ -170,4 +170,4 @@ std::vector<std::string> verify(const Triangulation<D>& triangulation) {
 template std::vector<std::string> verify<2>(const Triangulation<2>&);
 template std::vector<std::string> verify<3>(const Triangulation<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

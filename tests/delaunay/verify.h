@@ -5,7 +5,7 @@
 
 #include "src/delaunay/common/triangulation.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// Checks a triangulation from first principles: vertex numbers in range, every neighbour relation
 /// symmetric across a common facet, every finite simplex positively oriented, each facet locally
@@ -14,4 +14,4 @@ namespace spillway::detail {
 template <int D>
 std::vector<std::string> verify(const Triangulation<D>& triangulation);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -21,7 +21,7 @@
 #include "tests/distributed/world.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::test {
 namespace {
 
 /// Which rank gives which points.
@@ -108,7 +108,7 @@ struct Expected {
   std::uint64_t hash = 0;
 
   explicit Expected(const std::vector<Point<D>>& points)
-      : triangulation(spillway::detail::delaunay<D>(points, {.threads = 1})) {
+      : triangulation(delaunay::delaunay_triangulation<D>(points, {.threads = 1})) {
     const auto number = [&](VertexId v) {
       return v == kInfiniteVertex ? v : triangulation.input_index[v];
     };
@@ -123,7 +123,7 @@ struct Expected {
       if (!simplex.infinite()) canonical.add(positions);
       simplices.emplace(corners);
     });
-    for (const Duplicate& duplicate : triangulation.duplicates) {
+    for (const DroppedDuplicate& duplicate : triangulation.duplicates) {
       duplicates[number(duplicate.dropped)] = number(duplicate.kept);
     }
     hash = canonical.value();
@@ -240,35 +240,35 @@ class ShareCheck {
 template <int D>
 Share<D> delaunay_of(const Deal<D>& deal, std::size_t gather_below, std::size_t largest_message) {
   const auto triangulate = [](std::vector<Point<D>> points) {
-    return spillway::detail::delaunay<D>(points, {.threads = 1});
+    return delaunay::delaunay_triangulation<D>(points, {.threads = 1});
   };
-  return delaunay<D>(deal.own(), world(),
-                     {.triangulate = triangulate,
-                      .gather_below = gather_below,
-                      .limits = {.largest_message = largest_message}});
+  return distributed::delaunay_triangulation<D>(deal.own(), world(),
+                                                {.triangulate = triangulate,
+                                                 .gather_below = gather_below,
+                                                 .limits = {.largest_message = largest_message}});
 }
 
 template <int D>
 void expect_shares_of_sequential(const std::vector<Point<D>>& points, Dealing dealing,
                                  std::size_t gather_below) {
-  SCOPED_TRACE(testing::Message() << points.size() << " points, dealing "
-                                  << static_cast<int>(dealing) << ", gathered below "
-                                  << gather_below);
+  SCOPED_TRACE(::testing::Message()
+               << points.size() << " points, dealing " << static_cast<int>(dealing)
+               << ", gathered below " << gather_below);
   const Deal<D> deal(points, dealing);
   const Share<D> share = delaunay_of(deal, gather_below, points.size() % 2 == 0 ? 500 : 1U << 20U);
   const Expected<D> expected(deal.points);
-  ASSERT_THAT(ShareCheck<D>(share, deal, expected).faults(), testing::IsEmpty());
+  ASSERT_THAT(ShareCheck<D>(share, deal, expected).faults(), ::testing::IsEmpty());
 }
 
 constexpr std::size_t kAlwaysRecursive = 0;
 constexpr std::size_t kAlwaysGathered = 1'000'000;
 
-class DistributedFamily : public testing::TestWithParam<FamilyCase> {
+class DistributedFamily : public ::testing::TestWithParam<FamilyCase> {
  protected:
   template <int D>
   static void expect_same(std::uint64_t count) {
     const auto points = [&](std::uint64_t n, std::uint64_t seed) {
-      return generate_points<D>({GetParam().family, n, D, seed});
+      return generated_points<D>({GetParam().family, n, D, seed});
     };
     expect_shares_of_sequential<D>(points(count, 1), Dealing::kAtRandom, kAlwaysRecursive);
     expect_shares_of_sequential<D>(points(count, 2), Dealing::kSkewed, count / 8);
@@ -285,11 +285,11 @@ TEST_P(DistributedFamily, GivesSharesOfTheSequentialTriangulation) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, DistributedFamily, testing::ValuesIn(all_family_cases()),
+INSTANTIATE_TEST_SUITE_P(Families, DistributedFamily, ::testing::ValuesIn(all_family_cases()),
                          family_case_name);
 
 template <typename Dimension>
-class DistributedDelaunay : public testing::Test {
+class DistributedDelaunay : public ::testing::Test {
  protected:
   static constexpr int kD = Dimension::value;
 
@@ -304,7 +304,7 @@ class DistributedDelaunay : public testing::Test {
   }
 };
 
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(DistributedDelaunay, Dimensions);
 
 TYPED_TEST(DistributedDelaunay, TakesFewerPointsThanRanksAndNoneAtAll) {
@@ -336,7 +336,7 @@ TYPED_TEST(DistributedDelaunay, TakesPartsThatAreSingleLinesOrPlanes) {
 }
 
 TYPED_TEST(DistributedDelaunay, RecursesThroughSeveralLevelsOfBorders) {
-  const auto points = generate_points<TestFixture::kD>(
+  const auto points = generated_points<TestFixture::kD>(
       {Family::kUniform, TestFixture::kD == 2 ? 12'000U : 2'000U, TestFixture::kD, 9});
   expect_shares_of_sequential<TestFixture::kD>(points, Dealing::kAtRandom, kAlwaysRecursive);
 }
@@ -344,7 +344,7 @@ TYPED_TEST(DistributedDelaunay, RecursesThroughSeveralLevelsOfBorders) {
 TYPED_TEST(DistributedDelaunay, GivesEveryRankAboutAsManyVertices) {
   constexpr std::size_t kCount = 16'000;
   const auto points =
-      generate_points<TestFixture::kD>({Family::kUniform, kCount, TestFixture::kD, 9});
+      generated_points<TestFixture::kD>({Family::kUniform, kCount, TestFixture::kD, 9});
   const Deal<TestFixture::kD> deal(points, Dealing::kLastRank);
   const auto share = delaunay_of(deal, 100'000, 1U << 20U);
   const double wanted = static_cast<double>(kCount) / world().size();
@@ -352,4 +352,4 @@ TYPED_TEST(DistributedDelaunay, GivesEveryRankAboutAsManyVertices) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::test

@@ -10,13 +10,13 @@
 
 #include "tests/distributed/world.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::test {
 namespace {
 
 std::optional<Ranks> joined;
 
-class Failures : public testing::EmptyTestEventListener {
-  void OnTestPartResult(const testing::TestPartResult& result) override {
+class Failures : public ::testing::EmptyTestEventListener {
+  void OnTestPartResult(const ::testing::TestPartResult& result) override {
     if (result.failed() && world().rank() != 0) {
       fmt::print(stderr, "rank {}: {}:{}: {}\n", world().rank(),
                  result.file_name() == nullptr ? "" : result.file_name(), result.line_number(),
@@ -24,7 +24,7 @@ class Failures : public testing::EmptyTestEventListener {
     }
   }
 
-  void OnTestEnd(const testing::TestInfo& test) override {
+  void OnTestEnd(const ::testing::TestInfo& test) override {
     if (test.result()->Failed()) {
       fmt::print(stderr, "rank {} of {}: {}.{} failed\n", world().rank(), world().size(),
                  test.test_suite_name(), test.name());
@@ -38,17 +38,17 @@ class Failures : public testing::EmptyTestEventListener {
 
 const Ranks& world() { return *joined; }
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  using spillway::detail::distributed::joined;
-  testing::InitGoogleTest(&argc, argv);
-  joined = spillway::detail::distributed::Ranks::all();
-  auto& listeners = testing::UnitTest::GetInstance()->listeners();
+  using spillway::test::joined;
+  ::testing::InitGoogleTest(&argc, argv);
+  joined = spillway::distributed::Ranks::all();
+  auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
   if (joined->rank() != 0) {
     delete listeners.Release(listeners.default_result_printer());
   }
-  listeners.Append(new spillway::detail::distributed::Failures);
+  listeners.Append(new spillway::test::Failures);
   const int result = RUN_ALL_TESTS();
   joined.reset();  // MPI is left here, not among the destructors of other libraries' globals.
   return result;

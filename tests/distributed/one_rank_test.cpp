@@ -15,7 +15,7 @@
 #include "src/distributed/shared_file.h"
 #include "src/error.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::test {
 namespace {
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -30,10 +30,10 @@ TEST(OneRank, IsAGroupOfItsOwn) {
   EXPECT_EQ(ranks.split(7).size(), 1);
   std::array<std::uint64_t, 2> values = {3, 5};
   ranks.reduce(values, Reduction::kSum);
-  EXPECT_THAT(values, testing::ElementsAre(3, 5));
+  EXPECT_THAT(values, ::testing::ElementsAre(3, 5));
   const std::vector<std::byte> bytes = bytes_of("abc");
-  EXPECT_THAT(ranks.gather(bytes), testing::ElementsAre(bytes));
-  EXPECT_THAT(ranks.gather(bytes, 0), testing::ElementsAre(bytes));
+  EXPECT_THAT(ranks.gather(bytes), ::testing::ElementsAre(bytes));
+  EXPECT_THAT(ranks.gather(bytes, 0), ::testing::ElementsAre(bytes));
   std::vector<Message> messages;
   messages.push_back({0, bytes});
   const std::vector<Message> received = ranks.exchange(messages);
@@ -43,7 +43,7 @@ TEST(OneRank, IsAGroupOfItsOwn) {
 }
 
 TEST(OneRank, SharedFileIsAFile) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "one_rank";
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "one_rank";
   const Ranks ranks = Ranks::all();
   {
     SharedFile file(ranks, path.string());
@@ -54,7 +54,7 @@ TEST(OneRank, SharedFileIsAFile) {
   std::ifstream in(path);
   EXPECT_EQ(std::string(std::istreambuf_iterator(in), {}), "abcdef");
   std::filesystem::remove(path);
-  EXPECT_THROW(SharedFile(ranks, "/nowhere/at/all"), Error);
+  EXPECT_THROW(SharedFile(ranks, "/nowhere/at/all"), Failure);
 }
 
 TEST(OneRank, SeveralAreAnErrorThatSaysWhatIsMissing) {
@@ -62,12 +62,12 @@ TEST(OneRank, SeveralAreAnErrorThatSaysWhatIsMissing) {
   try {
     Ranks::all();
     ADD_FAILURE() << "three ranks without MPI";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("has no MPI, so 3 processes cannot"));
+  } catch (const Failure& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("has no MPI, so 3 processes cannot"));
   }
   forget_launch();
   EXPECT_EQ(launch().ranks, 1);
 }
 
 }  // namespace
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::test

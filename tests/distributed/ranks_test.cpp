@@ -18,7 +18,7 @@
 #include "src/error.h"
 #include "tests/distributed/world.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -420,8 +420,8 @@ TEST(SharedFile, InAMissingFolderThrowsAtAllRanks) {
   try {
     const SharedFile file(world(), path);
     ADD_FAILURE() << "created";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("cannot create " + path + ": "));
+  } catch (const Failure& error) {
+    EXPECT_THAT(error.what(), ::testing::StartsWith("cannot create " + path + ": "));
   }
 }
 
@@ -457,4 +457,4 @@ TEST(Traffic, CountsMessagesToOtherRanksOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::test

@@ -3,9 +3,9 @@
 
 #include "src/distributed/ranks.h"
 
-namespace spillway::detail::distributed {
+namespace spillway::test {
 
 /// All ranks of the job; the main function of the test program has joined them.
 const Ranks& world();
 
-}  // namespace spillway::detail::distributed
+}  // namespace spillway::test

@@ -15,7 +15,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/points/las_flags_layout.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Everything that a reader gives.
 struct AllPoints {
@@ -65,13 +65,13 @@ inline AllPoints read_content(const std::string& path, const std::string& conten
   return read_all_points(files, path, options, flags);
 }
 
-/// The message of the Error that `action` throws; a failure of the test if it throws none. A
+/// The message of the Failure that `action` throws; a failure of the test if it throws none. A
 /// message is one line.
 template <typename F>
 std::string error_of(F&& action) {
   try {
     action();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     std::string message = error.what();
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     return message;
@@ -101,4 +101,4 @@ void put(std::string& content, std::size_t at, const T& value) {
   std::memcpy(&content[at], &value, sizeof(T));
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 inline constexpr std::array<std::uint32_t, 64> kSha256Constants = {
     0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
@@ -69,4 +69,4 @@ inline std::string sha256(std::string_view bytes) {
   return digest;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/formats/sha256.h"
 #include "tests/test_paths.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 inline std::filesystem::path shared_file(const char* name) {
   return test::shared_data_folder() / name;
@@ -54,4 +54,4 @@ inline std::string name_of_sample(const ::testing::TestParamInfo<Sample>& tested
 inline constexpr const char* kAutzenPoints =
     "c29fb60ac342200ce4cf4ef97c8aa366e65fd83aef4abbafddee90e9224109cd";
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Wide = __int128;
@@ -22,29 +22,29 @@ std::size_t distinct(const std::vector<P>& points) {
   return std::set(points.begin(), points.end()).size();
 }
 
-TEST(Lattice, FillsANearSquareRowByRow) {
-  const auto points = generate_points<2>({Family::kLattice, 10, 2, 1});
+TEST(IntegerLattice, FillsANearSquareRowByRow) {
+  const auto points = generated_points<2>({Family::kLattice, 10, 2, 1});
   const std::vector<Point<2>> expected = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {0, 1},
                                           {1, 1}, {2, 1}, {3, 1}, {0, 2}, {1, 2}};
   EXPECT_EQ(points, expected);
 }
 
-TEST(Lattice, FillsANearCubeLayerByLayer) {
-  const auto points = generate_points<3>({Family::kLattice, 1000, 3, 1});
+TEST(IntegerLattice, FillsANearCubeLayerByLayer) {
+  const auto points = generated_points<3>({Family::kLattice, 1000, 3, 1});
   EXPECT_EQ(distinct(points), 1000U);
   EXPECT_EQ(points[999], (Point<3>{9, 9, 9}));
   EXPECT_EQ(points[100], (Point<3>{0, 0, 1}));
 }
 
-TEST(Lattice, HasTheUnitLattice) {
+TEST(IntegerLattice, HasTheUnitLattice) {
   const auto generator = make_generator({Family::kLattice, 10, 2, 1});
   ASSERT_NE(generator->lattice(), nullptr);
-  EXPECT_EQ(*generator->lattice(), Lattice{});
+  EXPECT_EQ(*generator->lattice(), IntegerLattice{});
 }
 
 TEST(Circle, EveryOtherPointIsExactlyOnIt) {
   for (const std::uint64_t count : {10, 1000, 100000}) {
-    const auto points = generate_points<2>({Family::kCircle, count, 2, 3});
+    const auto points = generated_points<2>({Family::kCircle, count, 2, 3});
     const Wide squared_radius = squared_norm({points[0][0], points[0][1], 0});
     const double radius = std::sqrt(static_cast<double>(squared_radius));
     std::set<Point<2>> exact;
@@ -64,14 +64,14 @@ TEST(Circle, EveryOtherPointIsExactlyOnIt) {
 
 TEST(Circle, RunsOutOfExactPointsOnlyFarBeyondOtherTests) {
   constexpr std::size_t kExactPoints = 236196;  // 4 * 3^10
-  const auto points = generate_points<2>({Family::kCircle, 2 * kExactPoints + 100, 2, 3});
+  const auto points = generated_points<2>({Family::kCircle, 2 * kExactPoints + 100, 2, 3});
   std::set<Point<2>> exact;
   for (std::size_t i = 0; i < 2 * kExactPoints; i += 2) exact.insert(points[i]);
   EXPECT_EQ(exact.size(), kExactPoints);
 }
 
 TEST(Circle, OnASphereInThreeDimensions) {
-  const auto points = generate_points<3>({Family::kCircle, 20000, 3, 3});
+  const auto points = generated_points<3>({Family::kCircle, 20000, 3, 3});
   const Wide squared_radius = squared_norm(points[0]);
   const double radius = std::sqrt(static_cast<double>(squared_radius));
   std::set<Point<3>> exact;
@@ -91,7 +91,7 @@ TEST(Circle, OnASphereInThreeDimensions) {
 }
 
 TEST(Clusters, AreSixteenTightOnesFarApart) {
-  const auto points = generate_points<3>({Family::kClusters, 1600, 3, 3});
+  const auto points = generated_points<3>({Family::kClusters, 1600, 3, 3});
   for (std::size_t i = 16; i < points.size(); ++i) {
     for (int k = 0; k < 3; ++k) EXPECT_LT(std::abs(points[i][k] - points[i % 16][k]), 1);
   }
@@ -103,15 +103,15 @@ TEST(Clusters, AreSixteenTightOnesFarApart) {
 }
 
 TEST(Duplicates, AreAboutARootOfNDistinctPoints) {
-  EXPECT_EQ(distinct(generate_points<2>({Family::kDuplicates, 10000, 2, 3})), 100U);
-  EXPECT_EQ(distinct(generate_points<3>({Family::kDuplicates, 10000, 3, 3})), 100U);
+  EXPECT_EQ(distinct(generated_points<2>({Family::kDuplicates, 10000, 2, 3})), 100U);
+  EXPECT_EQ(distinct(generated_points<3>({Family::kDuplicates, 10000, 3, 3})), 100U);
 }
 
 TEST(Collinear, LiesExactlyOnALine) {
-  for (const auto& p : generate_points<2>({Family::kCollinear, 1000, 2, 3})) {
+  for (const auto& p : generated_points<2>({Family::kCollinear, 1000, 2, 3})) {
     EXPECT_EQ(2 * p[0] + 3 * p[1], 0);
   }
-  const auto points = generate_points<3>({Family::kCollinear, 1000, 3, 3});
+  const auto points = generated_points<3>({Family::kCollinear, 1000, 3, 3});
   for (const auto& p : points) {
     EXPECT_EQ(2 * p[0] + 3 * p[1], 0);
     EXPECT_EQ(5 * p[0] - 3 * p[2], 0);
@@ -120,13 +120,13 @@ TEST(Collinear, LiesExactlyOnALine) {
 }
 
 TEST(Coplanar, LiesExactlyOnAnObliquePlane) {
-  for (const auto& p : generate_points<3>({Family::kCoplanar, 1000, 3, 3})) {
+  for (const auto& p : generated_points<3>({Family::kCoplanar, 1000, 3, 3})) {
     EXPECT_EQ(2 * p[0] - 3 * p[1] + 7 - p[2], 0);
   }
 }
 
 TEST(Utm, IsFarFromTheOrigin) {
-  for (const auto& p : generate_points<3>({Family::kUtm, 1000, 3, 3})) {
+  for (const auto& p : generated_points<3>({Family::kUtm, 1000, 3, 3})) {
     EXPECT_TRUE(p[0] >= 500000 && p[0] <= 501000);
     EXPECT_TRUE(p[1] >= 4100000 && p[1] <= 4101000);
     EXPECT_TRUE(p[2] >= 0 && p[2] <= 200);
@@ -134,4 +134,4 @@ TEST(Utm, IsFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(Direction, OfQuarterTurnsIsExact) {
@@ -33,4 +33,4 @@ TEST(Direction, IsThatOfTheLibraryToAFewUnitsInTheLastPlace) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kCount = 40000;
@@ -31,7 +31,7 @@ Moments moments(const std::vector<P>& points, int axis) {
 
 template <int D>
 std::vector<Point<D>> points_of(Family family) {
-  return generate_points<D>({family, kCount, D, 42});
+  return generated_points<D>({family, kCount, D, 42});
 }
 
 template <typename Dimension>
@@ -143,4 +143,4 @@ TEST(RandomNumbers, BelowStaysBelowAndReachesAll) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

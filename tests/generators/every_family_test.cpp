@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -36,8 +36,8 @@ class EveryFamily : public ::testing::TestWithParam<std::string> {
 
 TEST_P(EveryFamily, HasExactlyTheNumberOfPointsAskedFor) {
   for (const std::uint64_t count : {0, 1, 2, 3, 4, 7, 8, 9, 27, 28, 1000}) {
-    EXPECT_EQ(generate_points<2>(options(count, 2)).size(), count);
-    EXPECT_EQ(generate_points<3>(options(count, 3)).size(), count);
+    EXPECT_EQ(generated_points<2>(options(count, 2)).size(), count);
+    EXPECT_EQ(generated_points<3>(options(count, 3)).size(), count);
   }
 }
 
@@ -53,7 +53,7 @@ TEST_P(EveryFamily, IsTheSameForEveryBlockSize) {
 
 TEST_P(EveryFamily, DiffersFromSeedToSeedUnlessItIsTheGrid) {
   const bool same =
-      generate_points<3>(options(100, 3, 1)) == generate_points<3>(options(100, 3, 2));
+      generated_points<3>(options(100, 3, 1)) == generated_points<3>(options(100, 3, 2));
   EXPECT_EQ(same, GetParam() == "lattice");
 }
 
@@ -81,7 +81,7 @@ TEST_P(EveryFamily, WithALatticeConsistsOfIntegersThatFitLas) {
 
 TEST_P(EveryFamily, GivesItsPointsToCallersOfEitherDimension) {
   const auto stream = in_blocks_of(50, options(50, 3));
-  const auto points = generate_points<3>(options(50, 2));  // the template decides
+  const auto points = generated_points<3>(options(50, 2));  // the template decides
   EXPECT_EQ(points, stream);
 }
 
@@ -95,7 +95,7 @@ std::uint64_t fingerprint(const std::vector<Point<3>>& points) {
 }
 
 TEST_P(EveryFamily, IsTheSameOnEveryMachineAndInEveryVersion) {
-  // Figures measured on these points would no longer be comparable if they changed.
+  // Statistics measured on these points would no longer be comparable if they changed.
   const std::map<std::string, std::uint64_t> fingerprints = {
       {"uniform", 0xfa56f980c641dc72ULL},   {"normal", 0x366218110e045591ULL},
       {"bubbles", 0xfe8618b7aa74a4a1ULL},   {"ellipsoid", 0xb6cf6a25e1d760dfULL},
@@ -138,4 +138,4 @@ TEST(Generators, OtherDimensionsAreAInvalidArgument) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

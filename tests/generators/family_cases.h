@@ -9,7 +9,7 @@
 
 #include "src/generators/generators.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 struct FamilyCase {
   Family family;
@@ -31,8 +31,8 @@ inline void PrintTo(const FamilyCase& tested, std::ostream* out) {
   *out << family_names()[static_cast<std::size_t>(tested.family)] << tested.dimension << 'd';
 }
 
-inline std::string family_case_name(const testing::TestParamInfo<FamilyCase>& tested) {
-  return testing::PrintToString(tested.param);
+inline std::string family_case_name(const ::testing::TestParamInfo<FamilyCase>& tested) {
+  return ::testing::PrintToString(tested.param);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

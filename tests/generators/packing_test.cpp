@@ -13,7 +13,7 @@
 #include "src/generators/generators.h"
 #include "src/generators/shuffle.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr double kSmallRadius = 1.28;
@@ -52,7 +52,7 @@ std::vector<double> near_distances(const std::vector<Point<D>>& points, double m
 
 template <int D>
 std::vector<Point<D>> packing(std::uint64_t count, std::uint64_t seed = 1) {
-  return generate_points<D>({Family::kPacking, count, D, seed});
+  return generated_points<D>({Family::kPacking, count, D, seed});
 }
 
 template <typename Dimension>
@@ -162,4 +162,4 @@ TEST(Shuffle, TakesNumbersOf63Bits) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "src/generators/generators.h"
 #include "src/generators/scan_scene.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Six standard deviations of the noise at the end of the range, and what the bilinear ground and
@@ -19,7 +19,7 @@ namespace {
 constexpr double kTolerance = 0.03;
 
 std::vector<Point<3>> scan(std::uint64_t count, std::uint64_t seed) {
-  auto points = generate_points<3>({Family::kScan, count, 3, seed});
+  auto points = generated_points<3>({Family::kScan, count, 3, seed});
   for (Point<3>& p : points) {
     for (double& x : p) x *= 0.0001;
   }
@@ -100,12 +100,12 @@ std::vector<Turn> turns_of(const ScanScene& scene, const std::vector<Point<3>>& 
 TEST(Scan, IsInTenthsOfMillimetres) {
   const auto generator = make_generator({Family::kScan, 10, 3, 1});
   ASSERT_NE(generator->lattice(), nullptr);
-  EXPECT_EQ(*generator->lattice(), (Lattice{{0.0001, 0.0001, 0.0001}, {0, 0, 0}}));
+  EXPECT_EQ(*generator->lattice(), (IntegerLattice{{0.0001, 0.0001, 0.0001}, {0, 0, 0}}));
 }
 
 TEST(Scan, IsTheSameForEitherDimension) {
-  const auto flat = generate_points<2>({Family::kScan, 1000, 2, 7});
-  const auto full = generate_points<3>({Family::kScan, 1000, 3, 7});
+  const auto flat = generated_points<2>({Family::kScan, 1000, 2, 7});
+  const auto full = generated_points<3>({Family::kScan, 1000, 3, 7});
   for (std::size_t i = 0; i < flat.size(); ++i) {
     EXPECT_EQ(flat[i], (Point<2>{full[i][0], full[i][1]}));
   }
@@ -288,4 +288,4 @@ TEST(ScanScene, HasStreetsThatAreWideEnoughAndEveryNumberOfHousesAndStations) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

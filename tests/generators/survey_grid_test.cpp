@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr Box<3> kExtent{{1000, -500, 0}, {2000, 500, 50}};
@@ -86,4 +86,4 @@ TEST(SurveyGrid, TakesPointsThatAreAllEqual) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

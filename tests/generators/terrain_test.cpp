@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 constexpr std::uint64_t kCount = 400000;
 
 const std::vector<Point<3>>& sample() {
-  static const auto points = generate_points<3>({Family::kTerrain, kCount, 3, 7});
+  static const auto points = generated_points<3>({Family::kTerrain, kCount, 3, 7});
   return points;
 }
 
@@ -33,7 +33,7 @@ std::map<std::pair<int, int>, int> counts_in_squares(double metres) {
 TEST(Terrain, IsInCentimetresAtUtmOffsets) {
   const auto generator = make_generator({Family::kTerrain, 10, 2, 1});
   ASSERT_NE(generator->lattice(), nullptr);
-  EXPECT_EQ(*generator->lattice(), (Lattice{{0.01, 0.01, 0.01}, {500000, 4100000, 0}}));
+  EXPECT_EQ(*generator->lattice(), (IntegerLattice{{0.01, 0.01, 0.01}, {500000, 4100000, 0}}));
 }
 
 TEST(Terrain, HasPositiveCoordinatesOfOneArea) {
@@ -45,8 +45,8 @@ TEST(Terrain, HasPositiveCoordinatesOfOneArea) {
 }
 
 TEST(Terrain, IsTheSameForEitherDimension) {
-  const auto flat = generate_points<2>({Family::kTerrain, 1000, 2, 7});
-  const auto full = generate_points<3>({Family::kTerrain, 1000, 3, 7});
+  const auto flat = generated_points<2>({Family::kTerrain, 1000, 2, 7});
+  const auto full = generated_points<3>({Family::kTerrain, 1000, 3, 7});
   for (std::size_t i = 0; i < flat.size(); ++i) {
     EXPECT_EQ(flat[i], (Point<2>{full[i][0], full[i][1]}));
   }
@@ -54,7 +54,7 @@ TEST(Terrain, IsTheSameForEitherDimension) {
 
 TEST(Terrain, AFewPerCentOfThePointsRepeatAnXy) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    auto points = generate_points<3>({Family::kTerrain, 100000, 3, seed});
+    auto points = generated_points<3>({Family::kTerrain, 100000, 3, seed});
     std::sort(points.begin(), points.end());
     std::size_t repeated = 0;
     std::size_t same_z = 0;
@@ -148,11 +148,11 @@ TEST(Terrain, HugeOnesStayWithinThirtyTwoBitsOrAreRefused) {
   try {
     make_generator({Family::kTerrain, 10000000000000000, 3, 7});
     FAIL();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), HasSubstr("10000000000000000 points"));
     EXPECT_THAT(error.what(), HasSubstr("at most 10^15"));
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include "src/geometry/determinants.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 using Rational = boost::multiprecision::cpp_rational;
 
@@ -60,4 +60,4 @@ struct ExactSphere {
   }
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

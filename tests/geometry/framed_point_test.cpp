@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <typename A, typename B>
@@ -44,10 +44,10 @@ TEST(FramedPoint, PointsOfOneKindAreCompared) {
 }
 
 TEST(FramedPoint, ALatticeMapsPointsToOutputCoordinates) {
-  const Lattice lattice{{0.5, 0.25, 2}, {10, 20, 30}};
+  const IntegerLattice lattice{{0.5, 0.25, 2}, {10, 20, 30}};
   EXPECT_EQ(in_world(lattice, {2, 4, 1}), (WorldPoint{11, 21, 32}));
   EXPECT_EQ(in_world(std::nullopt, {2, 4, 1}), (WorldPoint{2, 4, 1}));
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

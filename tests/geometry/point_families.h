@@ -11,7 +11,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// D+2 points: a simplex and a query.
 template <int D>
@@ -191,4 +191,4 @@ std::array<Point<D>, D + 1> simplex_of(const Group<D>& group) {
   return simplex;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

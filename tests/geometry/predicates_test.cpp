@@ -8,15 +8,15 @@
 #include "src/geometry/predicate_stages.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::Group;
-using testing::Hard;
-using testing::hard_groups;
-using testing::kAllHard;
-using testing::name_of;
-using testing::simplex_of;
+using test::Group;
+using test::Hard;
+using test::hard_groups;
+using test::kAllHard;
+using test::name_of;
+using test::simplex_of;
 
 constexpr std::size_t kGroups = 2000;
 
@@ -97,7 +97,7 @@ TYPED_TEST(PredicatesTest, IntegerStageRefusesDifferencesThatAreRounded) {
 
 TYPED_TEST(PredicatesTest, IntegerStageDoesNotOverflowAtItsLimit) {
   constexpr int D = TypeParam::value;
-  testing::Random random(4);
+  test::Random random(4);
   for (int trial = 0; trial < 500; ++trial) {
     std::array<Point<D>, D + 1> simplex{};
     Group<D> group{};
@@ -241,10 +241,10 @@ TYPED_TEST(PredicatesTest, CoordinatesThatAreNotFiniteThrow) {
     std::array<Point<D>, D + 1> simplex{};
     for (int k = 0; k < D; ++k) simplex[k + 1][k] = 1;
     simplex[0][0] = bad;
-    EXPECT_THROW(orientation<D>(simplex), Error);
-    EXPECT_THROW(in_sphere<D>(simplex, Point<D>{}), Error);
+    EXPECT_THROW(orientation<D>(simplex), Failure);
+    EXPECT_THROW(in_sphere<D>(simplex, Point<D>{}), Failure);
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -20,7 +20,7 @@
 #include "src/geometry/longest_edge.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(LongestEdgeTest, EveryEdgeIsMeasuredInTheFirstCoordinatesOnly) {
@@ -68,8 +68,8 @@ TEST(BoxTest, LongestAxisIsTheLowestAmongEquals) {
 }
 
 TEST(LatticeTest, IntegersComeBackFromWorldCoordinates) {
-  const Lattice lattice{{0.01, 0.01, 0.001}, {637000.1, 4850000, -33.3}};
-  testing::Random random(1);
+  const IntegerLattice lattice{{0.01, 0.01, 0.001}, {637000.1, 4850000, -33.3}};
+  test::Random random(1);
   for (int trial = 0; trial < 20000; ++trial) {
     const int axis = trial % 3;
     const auto integer = static_cast<double>(random.integer(-2147483648LL, 2147483647LL));
@@ -78,20 +78,20 @@ TEST(LatticeTest, IntegersComeBackFromWorldCoordinates) {
 }
 
 TEST(LatticeTest, CoordinatesOffTheLatticeHaveNoInteger) {
-  const Lattice lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
+  const IntegerLattice lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
   EXPECT_FALSE(lattice.to_integer(0, 0.015).has_value());
   EXPECT_FALSE(lattice.to_integer(0, std::nextafter(lattice.to_world(0, 7), 1.0)).has_value());
   EXPECT_FALSE(lattice.to_integer(0, std::numeric_limits<double>::quiet_NaN()).has_value());
 }
 
 TEST(LatticeTest, IsotropyLooksAtTheFirstAxesOnly) {
-  const Lattice lattice{{0.01, 0.01, 0.001}, {0, 0, 0}};
+  const IntegerLattice lattice{{0.01, 0.01, 0.001}, {0, 0, 0}};
   EXPECT_TRUE(lattice.isotropic(2));
   EXPECT_FALSE(lattice.isotropic(3));
 }
 
 /// Whether integers of a range are distinct in the world and come back, tried one by one.
-bool are_apart(const Lattice& lattice, double lo, double hi) {
+bool are_apart(const IntegerLattice& lattice, double lo, double hi) {
   for (double n = lo; n <= hi; ++n) {
     const double world = lattice.to_world(0, n);
     if (!std::isfinite(world) || lattice.to_world(0, n + 1) == world ||
@@ -103,7 +103,7 @@ bool are_apart(const Lattice& lattice, double lo, double hi) {
 }
 
 TEST(LatticeTest, WhatIsSaidToKeepIntegersApartDoes) {
-  testing::Random random(7);
+  test::Random random(7);
   int kept = 0;
   int refused = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -112,8 +112,8 @@ TEST(LatticeTest, WhatIsSaidToKeepIntegersApartDoes) {
     const double size =
         std::ldexp(1.0 + random.uniform(), static_cast<int>(random.integer(30, 60)));
     const double base = std::floor(size / scale) * static_cast<double>(random.integer(-1, 1));
-    const Lattice lattice{{trial % 2 == 0 ? scale : -scale, 1, 1},
-                          {trial % 3 == 0 ? 0 : size, 0, 0}};
+    const IntegerLattice lattice{{trial % 2 == 0 ? scale : -scale, 1, 1},
+                                 {trial % 3 == 0 ? 0 : size, 0, 0}};
     const bool says = std::abs(base) < 0x1p53 && lattice.keeps_apart(0, base, base + 200);
     (says ? kept : refused) += 1;
     if (says) {
@@ -127,7 +127,7 @@ TEST(LatticeTest, WhatIsSaidToKeepIntegersApartDoes) {
 
 TEST(LatticeTest, KeepsIntegersApartWhereThatIsExact) {
   const auto keeps = [](double scale, double offset, double lo, double hi) {
-    return Lattice{{scale, 1, 1}, {offset, 0, 0}}.keeps_apart(0, lo, hi);
+    return IntegerLattice{{scale, 1, 1}, {offset, 0, 0}}.keeps_apart(0, lo, hi);
   };
   EXPECT_TRUE(keeps(1, 0, -0x1p53 + 1, 0x1p53 - 1));
   EXPECT_TRUE(keeps(0.125, 0x1p49, 0, 1000));
@@ -140,7 +140,7 @@ TEST(LatticeTest, KeepsIntegersApartWhereThatIsExact) {
   EXPECT_FALSE(keeps(1e305, 0, 0, 2000));
   EXPECT_FALSE(keeps(1e305, 0, -1000, 1000));  // differences are infinite
   EXPECT_FALSE(keeps(0.01, 1e305, 0, 0));
-  EXPECT_TRUE((Lattice{{0.01, 1, 1}, {1e305, 0, 0}}.is_finite(0, -0x1p31, 0x1p31)));
+  EXPECT_TRUE((IntegerLattice{{0.01, 1, 1}, {1e305, 0, 0}}.is_finite(0, -0x1p31, 0x1p31)));
 }
 
 template <typename Dimension>
@@ -150,17 +150,17 @@ TYPED_TEST_SUITE(CanonicalHashTest, Dimensions);
 
 TYPED_TEST(CanonicalHashTest, DependsNeitherOnSimplexNorVertexOrder) {
   constexpr int D = TypeParam::value;
-  const auto groups = testing::hard_groups<D>(testing::Hard::kUniform, 50, 2);
+  const auto groups = test::hard_groups<D>(test::Hard::kUniform, 50, 2);
   CanonicalHash<D> forwards;
   CanonicalHash<D> backwards;
   CanonicalHash<D> halves;
   CanonicalHash<D> second_half;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    forwards.add(testing::simplex_of<D>(groups[i]));
-    auto simplex = testing::simplex_of<D>(groups[groups.size() - 1 - i]);
+    forwards.add(test::simplex_of<D>(groups[i]));
+    auto simplex = test::simplex_of<D>(groups[groups.size() - 1 - i]);
     std::reverse(simplex.begin(), simplex.end());
     backwards.add(simplex);
-    (i < 20 ? halves : second_half).add(testing::simplex_of<D>(groups[i]));
+    (i < 20 ? halves : second_half).add(test::simplex_of<D>(groups[i]));
   }
   halves.add(second_half);
   EXPECT_EQ(forwards.value(), backwards.value());
@@ -170,8 +170,8 @@ TYPED_TEST(CanonicalHashTest, DependsNeitherOnSimplexNorVertexOrder) {
 
 TYPED_TEST(CanonicalHashTest, ChangesWithOneBitOfOneCoordinate) {
   constexpr int D = TypeParam::value;
-  const auto groups = testing::hard_groups<D>(testing::Hard::kUniform, 1, 3);
-  auto simplex = testing::simplex_of<D>(groups[0]);
+  const auto groups = test::hard_groups<D>(test::Hard::kUniform, 1, 3);
+  auto simplex = test::simplex_of<D>(groups[0]);
   CanonicalHash<D> before;
   before.add(simplex);
   simplex[1][D - 1] = std::nextafter(simplex[1][D - 1], 2.0);
@@ -216,7 +216,7 @@ TYPED_TEST(CanonicalHashTest, IsTheSumOfTheLibrarysHashes) {
 TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {
   constexpr int D = TypeParam::value;
   const auto simplex =
-      testing::simplex_of<D>(testing::hard_groups<D>(testing::Hard::kLidarLattice, 1, 4)[0]);
+      test::simplex_of<D>(test::hard_groups<D>(test::Hard::kLidarLattice, 1, 4)[0]);
   std::set<std::uint64_t> seen{hash_of<D>({simplex})};
   for (int i = 0; i <= D; ++i) {
     for (int k = 0; k < D; ++k) {
@@ -233,8 +233,8 @@ TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {
 
 TYPED_TEST(CanonicalHashTest, ChangesWhenSimplicesExchangeCornersOrCoordinates) {
   constexpr int D = TypeParam::value;
-  for (const auto& group : testing::hard_groups<D>(testing::Hard::kUniform, 200, 5)) {
-    const auto first = testing::simplex_of<D>(group);
+  for (const auto& group : test::hard_groups<D>(test::Hard::kUniform, 200, 5)) {
+    const auto first = test::simplex_of<D>(group);
     auto second = first;
     for (auto& corner : second) corner[0] += 10;
     const std::uint64_t before = hash_of<D>({first, second});
@@ -296,12 +296,12 @@ TYPED_TEST(CanonicalHashTest, FingerprintsOfVerticesMakeTheSameHash) {
   CanonicalHash<D> listed;
   std::vector<std::uint32_t> corners;
   std::vector<std::uint64_t> vertices;
-  for (const auto& group : testing::hard_groups<D>(testing::Hard::kSmallLattice, 100, 6)) {
-    for (const auto& corner : testing::simplex_of<D>(group)) {
+  for (const auto& group : test::hard_groups<D>(test::Hard::kSmallLattice, 100, 6)) {
+    for (const auto& corner : test::simplex_of<D>(group)) {
       corners.push_back(static_cast<std::uint32_t>(vertices.size()));
       vertices.push_back(vertex_hash<D>(corner));
     }
-    one_by_one.add(testing::simplex_of<D>(group));
+    one_by_one.add(test::simplex_of<D>(group));
   }
   listed.add(corners, vertices);
   EXPECT_EQ(listed.value(), one_by_one.value());
@@ -317,4 +317,4 @@ TEST(CanonicalHashValueTest, IsPartOfTheFormatAndNeverChanges) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

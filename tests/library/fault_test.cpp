@@ -15,24 +15,24 @@
 #include <xmmintrin.h>
 #endif
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::Points;
+using test::random_points;
 using ::testing::HasSubstr;
-using testing::Points;
-using testing::random_points;
 
 template <typename Dimension>
 class InMemoryFault : public ::testing::Test {};
-TYPED_TEST_SUITE(InMemoryFault, testing::Dimensions, testing::DimensionNames);
+TYPED_TEST_SUITE(InMemoryFault, test::Dimensions, test::DimensionNames);
 
 /// The code that triangulating throws; the text has to hold `text`.
 template <int D, class Index = std::int32_t>
 ErrorCode code_of(const PointView<D>& points, const std::string& text,
-                  const spillway::DelaunayOptions& options = {}) {
+                  const DelaunayOptions& options = {}) {
   try {
     const Delaunay<D, Index> mesh(points, options);
-  } catch (const spillway::Error& error) {
+  } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr(text));
     return error.code();
   }
@@ -81,7 +81,7 @@ TYPED_TEST(InMemoryFault, MorePointsThanNumbers) {
 
 TEST(Numbers, AsManyAsThereAreAreEnough) {
   require_numbers(5, 5, "cells");
-  EXPECT_THROW(require_numbers(6, 5, "cells"), spillway::Error);
+  EXPECT_THROW(require_numbers(6, 5, "cells"), Error);
 }
 
 TYPED_TEST(InMemoryFault, ArgumentsOfNoUse) {
@@ -89,11 +89,11 @@ TYPED_TEST(InMemoryFault, ArgumentsOfNoUse) {
   const Points<D> points = random_points<D>(10, 1);
   EXPECT_EQ(code_of<D>(points, "5000 threads", {.threads = 5000}), ErrorCode::kInvalidArgument);
   const Delaunay<D> mesh(points);
-  EXPECT_THROW(static_cast<void>(mesh.circumcentre(-1)), spillway::Error);
+  EXPECT_THROW(static_cast<void>(mesh.circumcentre(-1)), Error);
   EXPECT_THROW(static_cast<void>(mesh.circumcentre(static_cast<std::int32_t>(mesh.cell_count()))),
-               spillway::Error);
+               Error);
   const std::vector<double> values(9);
-  EXPECT_THROW(static_cast<void>(mesh.interpolate(values, points)), spillway::Error);
+  EXPECT_THROW(static_cast<void>(mesh.interpolate(values, points)), Error);
 }
 
 TYPED_TEST(InMemoryFault, StopBeforeTheBeginning) {
@@ -180,7 +180,7 @@ TYPED_TEST(InMemoryFault, OneMeshAskedByManyThreads) {
 #if defined(__x86_64__)
 TYPED_TEST(InMemoryFault, ProgramsMayRoundAndFlushAsTheyLike) {
   constexpr int D = TypeParam::value;
-  Points<D> points = testing::lattice_points<D>(60 / D / D, 7);
+  Points<D> points = test::lattice_points<D>(60 / D / D, 7);
   const Points<D> large = random_points<D>(D == 2 ? 70'000 : 140'000, 8);  // several threads
   for (auto& p : points) {
     for (double& c : p) c *= 0x1p-1074;
@@ -209,4 +209,4 @@ TEST(Errors, CodesHaveNames) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "src/geometry/point.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 template <int D>
 using Points = std::vector<Point<D>>;
@@ -76,7 +76,7 @@ Points<D> collinear_clusters(std::uint64_t seed) {
 
 template <int D>
 Points<D> of_family(Family family, std::uint64_t count) {
-  return generate_points<D>({.family = family, .count = count, .dimension = D, .seed = 3});
+  return generated_points<D>({.family = family, .count = count, .dimension = D, .seed = 3});
 }
 
 /// Sets that span D dimensions.
@@ -135,4 +135,4 @@ struct DimensionNames {
   }
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-class Parallel : public testing::TestWithParam<unsigned> {};
+class Parallel : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(Parallel, ForCoversEveryItemOnceInFixedGrains) {
   with_threads(GetParam(), [] {
@@ -83,7 +83,7 @@ TEST_P(Parallel, GroupsInsideOfATaskAreDoneThoughAnotherTaskFails) {
   EXPECT_EQ(done_when_it_returned, kTasks);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 4));
+INSTANTIATE_TEST_SUITE_P(Threads, Parallel, ::testing::Values(1, 2, 4));
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(ThreadDemands, HighestOfThoseBesideEachOtherCounts) {
@@ -51,4 +51,4 @@ TEST(ThreadDemands, CallersBesideEachOtherKeepTheirOwnNumbers) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

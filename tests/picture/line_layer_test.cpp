@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<int> strengths(const LineLayer& layer, std::uint32_t columns, std::uint32_t rows) {
@@ -74,4 +74,4 @@ TEST(LineLayer, TransparentPixelsStayTransparent) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr Colour kRed = {1, 0, 0};
@@ -95,4 +95,4 @@ TEST(Polygons, WithoutAreaNothingIsDrawn) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint32_t kSide = 60;
@@ -97,4 +97,4 @@ TEST(Relief, OutliersDoNotTakeAllColours) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

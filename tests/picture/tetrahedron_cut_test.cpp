@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Tetrahedron = std::array<Point<3>, 4>;
@@ -79,4 +79,4 @@ TEST(TetrahedronCut, AVertexOnThePlaneIsACornerToTheLastBit) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -36,7 +36,7 @@ class TheMesh(InFolder):
     def test_all_blocks_are_the_mesh(self):
         for dim in (2, 3):
             points = random_points(20_000, dim)
-            blocks = spillway.blocks(points, dim=dim, id=True, base_case=1000)
+            blocks = spillway.blocks(points, dim=dim, id=True, leaf_points=1000)
             vertices, simplices, index = gathered(blocks)
             numbers = np.concatenate(index)
             np.testing.assert_array_equal(points[numbers], vertices[:, :dim])
@@ -47,7 +47,7 @@ class TheMesh(InFolder):
     def test_out_of_core_from_files_within_little_memory(self):
         command("generate", "terrain", "-n", 1_000_000, "-o", "hills.las")
         command("triangulate", "hills.las", "-o", "mesh.spm", "--memory", "32M")
-        blocks = spillway.blocks("hills.las", memory="32M", tmpdir="tmp")
+        blocks = spillway.blocks("hills.las", memory="32M", scratch_folder="tmp")
         vertices, simplices, index = gathered(blocks)
         self.assertEqual(set(index), {None})
         told = spillway.info("mesh.spm")
@@ -83,7 +83,7 @@ class Endings(InFolder):
 
     def run_blocks(self, **options):
         points = random_points(1_000_000, 2)
-        return spillway.blocks(points, memory="32M", tmpdir="tmp", base_case=2000, **options)
+        return spillway.blocks(points, memory="32M", scratch_folder="tmp", leaf_points=2000, **options)
 
     def test_a_loop_that_is_left_early_ends_the_run(self):
         for block in self.run_blocks():
@@ -148,7 +148,7 @@ class Endings(InFolder):
         program = (
             "import numpy as np, spillway\n"
             "points = np.random.default_rng(1).random((1_000_000, 2))\n"
-            "blocks = spillway.blocks(points, memory='32M', tmpdir='tmp', base_case=2000)\n"
+            "blocks = spillway.blocks(points, memory='32M', scratch_folder='tmp', leaf_points=2000)\n"
             "next(blocks)\n"
             "held = [blocks]; held.append(held)\n"
         )
@@ -160,7 +160,7 @@ class Endings(InFolder):
         program = (
             "import os, sys, numpy as np, spillway\n"
             "points = np.random.default_rng(1).random((1_000_000, 2))\n"
-            "blocks = spillway.blocks(points, memory='32M', tmpdir='tmp', base_case=2000)\n"
+            "blocks = spillway.blocks(points, memory='32M', scratch_folder='tmp', leaf_points=2000)\n"
             "next(blocks)\n"
             "child = os.fork()\n"
             "if child == 0: sys.exit(0)\n"

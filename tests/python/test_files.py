@@ -60,11 +60,11 @@ class Triangulate(InFolder):
             "--bounds 0,0,0.2,0.5,0.7,1": {"bounds": [0, 0, 0.2, 0.5, 0.7, 1]},
             "--columns 2,3,1": {"columns": (2, 3, 1)},
             "--input-format text": {"input_format": "text"},
-            "--base-case 100": {"base_case": 100},
-            "--tile 1000 --children 4": {"tile": 1000, "children": 4},
-            "--division cycling --base-case 200": {"division": "cycling", "base_case": 200},
+            "--leaf-points 100": {"leaf_points": 100},
+            "--tile-points 1000 --children 4": {"tile_points": 1000, "children": 4},
+            "--division cycling --leaf-points 200": {"division": "cycling", "leaf_points": 200},
             "--kernel cgal": {"kernel": "cgal"},
-            "--distrust-headers": {"distrust_headers": True},
+            "--no-trust-headers": {"trust_headers": False},
             "--skip-invalid": {"skip_invalid": True},
             "--skip-broken": {"skip_broken": True},
             "--salvage": {"salvage": True},
@@ -111,7 +111,7 @@ class Triangulate(InFolder):
     def test_duplicates_choose_heights(self):
         points = np.array([[0, 0, 1], [4, 0, 1], [0, 4, 1], [0, 0, 5], [0, 0, 3.0]])
         for choice, z in {"first": 1, "lowest": 1, "highest": 5, "mean": 3}.items():
-            spillway.triangulate(points, "mesh_.npy", duplicates=choice)
+            spillway.triangulate(points, "mesh_.npy", heights=choice)
             vertices = np.load("mesh__vertices.npy")
             self.assertEqual(vertices[(vertices[:, :2] == 0).all(axis=1)][0, 2], z)
 
@@ -343,13 +343,23 @@ class Options(unittest.TestCase):
     # What reports and exceptions have, what is about the terminal, and what plays and shares runs.
     NOT_HERE = set("help json output parts progress quiet stats tasks verbose".split())
 
+    def test_names_that_options_had_before_go_on_working(self):
+        now = {"leaf_points": 100, "tile_points": 200, "heights": "mean", "trust_headers": False}
+        before = {"base_case": 100, "tile": 200, "duplicates": "mean", "distrust_headers": True}
+        spillway.generate("terrain", 500, "points.las")
+        for options, file in ((now, "now.spm"), (before, "before.spm")):
+            spillway.triangulate("points.las", file, **options)
+        self.assertEqual(open("now.spm", "rb").read(), open("before.spm", "rb").read())
+
     def test_functions_have_the_options_of_the_command(self):
         # What a call of a program has besides, and what stands without dashes there.
-        beside = set("inputs file mesh family output threads memory tmpdir max_tmp progress".split())
+        beside = set(
+            "inputs file mesh family output threads memory scratch_folder max_tmp progress".split()
+        )
         for name in "triangulate dem contour render check convert info generate".split():
             told = set(re.findall(r"--([a-z][a-z-]+)", command(name, "--help").split("Examples:")[0]))
             expected = {
-                option.replace("-", "_")
+                option.removeprefix("no-").replace("-", "_")
                 for option in told - self.NOT_HERE
                 if not option.startswith("simulate-")
             }
@@ -383,7 +393,7 @@ class Errors(InFolder):
         command("generate", "terrain", "-n", 1000, "-o", "hills.las")
         pathlib.Path("short.las").write_bytes(bytes_of("hills.las")[:-100])
         with self.assertRaisesRegex(spillway.errors.BadInputError, "short.las"):
-            spillway.triangulate("short.las", "mesh.spm", tmpdir="tmp")
+            spillway.triangulate("short.las", "mesh.spm", scratch_folder="tmp")
         self.assert_nothing_is_left("typo.txt", "hills.las", "short.las")
 
     def test_errors_name_the_arguments_that_help(self):
@@ -420,20 +430,20 @@ class Errors(InFolder):
             (TypeError, "max_edge is 'long'; give float", {"max_edge": "long"}),
             (TypeError, "every is 1.5; give int", {"every": 1.5}),
             (ValueError, "every is -1, which is out of range", {"every": -1}),
-            (ValueError, "tile is 1180591620717411303424", {"tile": 2**70}),
+            (ValueError, "tile_points is 1180591620717411303424", {"tile_points": 2**70}),
             (TypeError, r"bounds is '1234'; give sequence", {"bounds": "1234", "every": 1}),
             (TypeError, r"bounds is \('a', 1", {"bounds": ("a", 1, 2, 3), "every": 1}),
             (TypeError, r"thin is \(1,\); give float or", {"thin": (1,), "every": 1}),
             (TypeError, "output_format is 3; give str", {"output_format": 3}),
             (TypeError, "input_format is 3; give str", {"input_format": 3, "every": 1}),
-            (TypeError, "tmpdir is of type int; give a path", {"tmpdir": 3}),
+            (TypeError, "scratch_folder is of type int; give a path", {"scratch_folder": 3}),
             (TypeError, "threads is 1.5; give an int", {"threads": 1.5}),
             (ValueError, r"dim is array", {"dim": np.array([2, 3])}),
             (TypeError, "memory is 1.5", {"memory": 1.5}),
             (TypeError, "progress is 3", {"progress": 3}),
             (ValueError, "memory|size", {"memory": "much"}),
             (ValueError, "threads is 0", {"threads": 0}),
-            (ValueError, 'duplicates is "any"; give one of first, lowest', {"duplicates": "any"}),
+            (ValueError, 'heights is "any"; give one of first, lowest', {"heights": "any"}),
             (ValueError, 'kernel is "qhull"', {"kernel": "qhull"}),
             (ValueError, "dim is 4", {"dim": 4}),
             (ValueError, "dim is 3, but inputs has 2 columns", {"dim": 3}),
@@ -447,7 +457,7 @@ class Errors(InFolder):
             ("least coordinate above the most", {"bounds": (1, 0, 0, 1)}),
             ('returns has "second"', {"returns": "second"}),
             ('thin is "deepest"', {"thin": (1, "deepest")}),
-            ("no effect with dim=3", {"dim": 3, "duplicates": "mean"}),
+            ("no effect with dim=3", {"dim": 3, "heights": "mean"}),
         ]:
             with self.subTest(options=options), self.assertRaisesRegex(ValueError, words):
                 spillway.triangulate("hills.las", "mesh.spm", **options)
@@ -490,7 +500,7 @@ class Errors(InFolder):
                 lambda: spillway.triangulate(["hills.las", name], "mesh.ply"),
                 lambda: spillway.info(name),
                 lambda: spillway.dem(points, like=name),
-                lambda: spillway.triangulate(points, "mesh.ply", tmpdir=name),
+                lambda: spillway.triangulate(points, "mesh.ply", scratch_folder=name),
             ]:
                 with self.assertRaisesRegex(ValueError, words):
                     call()
@@ -520,8 +530,8 @@ class Errors(InFolder):
             spillway.triangulate(np.zeros((3, 2)), 3)
         with self.assertRaisesRegex(ValueError, "every has no effect on an array"):
             spillway.triangulate(np.eye(3), "mesh.spm", every=2)
-        with self.assertRaisesRegex(ValueError, "duplicates has no effect on points without z"):
-            spillway.triangulate(random_points(9, 2), "mesh.spm", duplicates="mean")
+        with self.assertRaisesRegex(ValueError, "heights has no effect on points without z"):
+            spillway.triangulate(random_points(9, 2), "mesh.spm", heights="mean")
         self.assert_nothing_is_left()
 
     def test_more_points_than_memory_holds_are_a_memory_error_before_the_work(self):
@@ -535,13 +545,13 @@ class Errors(InFolder):
             spillway.triangulate(points, "mesh.spm", memory="1M")
         self.assertEqual(caught.exception.code, "out of budget")
         with self.assertRaises(spillway.errors.OutOfBudgetError):
-            spillway.triangulate(points, "mesh.spm", memory="32M", tmpdir="tmp", max_tmp="64K")
+            spillway.triangulate(points, "mesh.spm", memory="32M", scratch_folder="tmp", max_tmp="64K")
         self.assert_nothing_is_left()
 
 
 class Resume(InFolder):
     def run_of(self, output, **options):
-        names = {"resume": "run", "checkpoint_every": 0.02, "memory": "64M", "tile": 5000}
+        names = {"resume": "run", "checkpoint_every": 0.02, "memory": "64M", "tile_points": 5000}
         return spillway.triangulate("hills.las", output, **{**names, **options})
 
     def test_a_program_that_is_killed_goes_on(self):
@@ -552,13 +562,13 @@ class Resume(InFolder):
             "def kill(done):\n"
             "    if done > 0.2 and os.path.exists('run/state'): os.kill(os.getpid(), 9)\n"
             "spillway.triangulate('hills.las', 'a.spm', resume='run', checkpoint_every=0.02,\n"
-            "                     memory='64M', tile=5000, progress=kill)\n"
+            "                     memory='64M', tile_points=5000, progress=kill)\n"
         )
         killed = subprocess.run([sys.executable, "-c", program])
         self.assertEqual(killed.returncode, -9)
         self.assertFalse(os.path.exists("a.spm"))
-        with self.assertRaisesRegex(ValueError, "tile is 6000, and was 5000"):
-            self.run_of("a.spm", tile=6000)
+        with self.assertRaisesRegex(ValueError, "tile points is 6000, and was 5000"):
+            self.run_of("a.spm", tile_points=6000)
         with self.assertWarnsRegex(spillway.Warning, "goes on with the run in run"):
             report = self.run_of(pathlib.Path("a.spm"), resume=pathlib.Path("run"))
         self.assertEqual(report.canonical_hash, whole.canonical_hash)
@@ -582,7 +592,7 @@ class Resume(InFolder):
         for call in (
             lambda **resume: spillway.dem("hills.las", resolution=2, **resume).values,
             lambda **resume: np.concatenate(
-                [block.vertices for block in spillway.blocks("hills.las", tile=5000, **resume)]
+                [block.vertices for block in spillway.blocks("hills.las", tile_points=5000, **resume)]
             ),
         ):
             np.testing.assert_array_equal(call(resume="run"), call())
@@ -633,7 +643,7 @@ class LongWork(InFolder):
         try:
             with self.assertRaises(KeyboardInterrupt):
                 spillway.triangulate(
-                    points, "mesh.spm", memory="64M", tmpdir="tmp", threads=1, progress=press
+                    points, "mesh.spm", memory="64M", scratch_folder="tmp", threads=1, progress=press
                 )
         finally:
             signal.signal(signal.SIGINT, before)
@@ -661,7 +671,7 @@ class LongWork(InFolder):
 
         with self.assertRaises(ZeroDivisionError):
             spillway.triangulate(
-                random_points(1_000_000, 2), "mesh.spm", memory="64M", tmpdir="tmp", progress=progress
+                random_points(1_000_000, 2), "mesh.spm", memory="64M", scratch_folder="tmp", progress=progress
             )
         self.assert_nothing_is_left()
 

@@ -58,7 +58,7 @@ class Dem(InFolder):
     def test_an_array_needs_neither_a_file_nor_room_for_one(self):
         x, y = np.meshgrid(np.arange(40.0), np.arange(30.0))
         points = np.column_stack([x.ravel(), y.ravel(), (2 * x + 3 * y).ravel()])
-        raster = spillway.dem(points, resolution=1, tmpdir="tmp")
+        raster = spillway.dem(points, resolution=1, scratch_folder="tmp")
         self.assertEqual(raster.values.shape, (29, 39))
         self.assertEqual(raster.geotransform, (0, 1, 0, 29, 0, -1))
         columns, rows = np.meshgrid(np.arange(39) + 0.5, 29 - (np.arange(29) + 0.5))

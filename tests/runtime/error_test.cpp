@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(ErrorNames, EveryCodeHasOneOfItsOwn) {
@@ -35,7 +35,7 @@ TEST(FilePlaces, AreWrittenWithTheirUnit) {
 }
 
 TEST(BadInputError, NamesFileAndPlaceInTheTextAndInTheFacts) {
-  const auto expect = [](const Error& error, const std::string& text, PlaceUnit unit) {
+  const auto expect = [](const Failure& error, const std::string& text, PlaceUnit unit) {
     EXPECT_EQ(error.what(), text);
     EXPECT_EQ(error.code(), ErrorCode::kBadInput);
     EXPECT_EQ(error.facts().file, "a.las");
@@ -86,4 +86,4 @@ TEST(ErrorKinds, HaveTheCodesThatCallersActBy) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

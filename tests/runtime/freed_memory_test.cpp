@@ -12,13 +12,13 @@
 #include "src/runtime/page_pool.h"
 #include "src/runtime/run_memory.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::size_t kPages = 2048;  // 8 MiB
 
-class FreedMemoryTest : public testing::Test {
+class FreedMemoryTest : public ::testing::Test {
  protected:
   /// Uses memory and frees it.
   void use_pages() {
@@ -77,4 +77,4 @@ TEST_F(FreedMemoryTest, RunsBesideEachOtherMayHoldTheSumOfTheirLimits) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

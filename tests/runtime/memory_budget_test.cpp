@@ -12,7 +12,7 @@
 #include "src/error.h"
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -48,7 +48,7 @@ TEST(MemoryBudget, GivesBackWhatALeaseHeld) {
   {
     const MemoryLease lease(budget, 60, "one thing");
     EXPECT_EQ(budget.used(), 60U);
-    EXPECT_THROW(MemoryLease(budget, 60, "another"), Error);
+    EXPECT_THROW(MemoryLease(budget, 60, "another"), Failure);
     EXPECT_EQ(budget.used(), 60U);
   }
   EXPECT_EQ(budget.used(), 0U);
@@ -92,7 +92,7 @@ TEST(MemoryBudget, SpeaksOfTheWholeThatItIsAPartOf) {
   try {
     const MemoryLease lease(budget, 40 * kMiB, "one thing");
     FAIL();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_STREQ(error.what(), "32 MiB of memory are too little for one thing");
     EXPECT_EQ(error.code(), ErrorCode::kOutOfBudget);
     EXPECT_EQ(error.facts().perhaps, 67 * kMiB);
@@ -113,7 +113,7 @@ TEST(MemoryBudget, WhatIsRefusedChangesNothing) {
   EXPECT_FALSE(budget.try_take(61));
   EXPECT_EQ(budget.used(), 40U);
   EXPECT_TRUE(budget.try_take(60)) << "the limit itself may be used";
-  EXPECT_THROW(budget.take(1, "one more"), Error);
+  EXPECT_THROW(budget.take(1, "one more"), Failure);
   EXPECT_EQ(budget.used(), 100U);
 }
 
@@ -168,4 +168,4 @@ TEST(ShrinkingLease, GivesBackNoMoreThanItHas) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

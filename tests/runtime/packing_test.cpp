@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(Packing, WhatIsPutIsTakenInTheSameOrder) {
@@ -67,4 +67,4 @@ TEST(Packing, ALengthThatNoMessageHasTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<PagePool::Page> pages(PagePool& pool, std::size_t count) {
@@ -66,4 +66,4 @@ TEST(PagePool, ServesManyThreads) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

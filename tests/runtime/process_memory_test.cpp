@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kMiB = std::size_t{1} << 20;
@@ -33,4 +33,4 @@ TEST(ProcessMemory, RisesAndFallsWithWhatIsInUseAndThePeakStays) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

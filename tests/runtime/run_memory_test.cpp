@@ -10,7 +10,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Kept {
@@ -82,4 +82,4 @@ TEST(RunMemory, OfRunsBesideEachOtherIsNeverMixed) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -103,4 +103,4 @@ TEST(StageTimes, StepsAreToldOneAtATime) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 Task work(double seconds) { return {.seconds = seconds}; }
@@ -25,4 +25,4 @@ TEST(Task, TotalHasTheOwnTimeAndAllStepsBelow) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Of samples of 1,000 and 4,000 points, where so many simplices take a byte each.
@@ -39,4 +39,4 @@ TEST(WorkForecast, OfFewerPointsIsNotLessThanTheSampleTook) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

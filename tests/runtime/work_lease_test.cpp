@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr WorkForecast kForecast{.points = 10, .bytes = 100, .exponent = 2};
@@ -37,7 +37,7 @@ TEST(WorkLease, WaitsForWorkThatIsUnderWay) {
 TEST(WorkLease, FailsWhereNothingIsLeftToWaitFor) {
   MemoryBudget budget(100);
   const MemoryLease held(budget, 50, "what is held for long");
-  EXPECT_THROW(WorkLease(budget, 60, "too much"), Error);
+  EXPECT_THROW(WorkLease(budget, 60, "too much"), Failure);
   EXPECT_EQ(budget.used(), 50U);
 }
 
@@ -68,7 +68,7 @@ TEST(WorkLease, WorkThatWaitsForMoreDoesNotKeepOthersFromFailing) {
       for (++begun; begun < 2;) std::this_thread::yield();
       try {
         lease.extend(60, "more than there will be");
-      } catch (const Error&) {
+      } catch (const Failure&) {
         ++failed;
       }
     });
@@ -110,7 +110,7 @@ TEST(WorkLease, ARefusalReachesAllThatWait) {
       for (++begun; begun < 3;) std::this_thread::yield();
       try {
         for (;;) lease.grow(10, kForecast);
-      } catch (const Error& error) {
+      } catch (const Failure& error) {
         EXPECT_EQ(error.code(), ErrorCode::kOutOfBudget);
         ++refused;
       }
@@ -128,9 +128,9 @@ TEST(WorkLease, ARefusalIsToldWhatIsForecast) {
     return std::uint64_t{0};
   });
   WorkLease lease(budget, 90, "work");
-  EXPECT_THROW(lease.grow(20, kForecast), Error);
+  EXPECT_THROW(lease.grow(20, kForecast), Failure);
   EXPECT_EQ(told, 1600) << "four times the points, by the square";
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -18,19 +18,19 @@
 #include "tests/stream/stream_runner.h"
 #include "tests/stream/triangulate/indexed_simplices.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::IndexedSimplices;
+using test::triangulated;
 using ::testing::ElementsAre;
 using ::testing::Gt;
-using testing::IndexedSimplices;
 using ::testing::Lt;
-using testing::triangulated;
 
 using Regions = std::vector<std::vector<LatticePoint>>;
 
 struct EarlyRun {
-  RunFigures figures;
+  RunStatistics statistics;
   KeepingWriter mesh;
   bool is_early = false;
 };
@@ -45,7 +45,7 @@ template <int D>
 EarlyRun run(RegionStream source, const EngineOptions& options = small_tiles()) {
   EarlyRun run{{}, KeepingWriter(D)};
   QuietSetup setup(options);
-  run.figures = triangulate_stream<D>(source, run.mesh, setup);
+  run.statistics = triangulate_stream<D>(source, run.mesh, setup);
   run.is_early = source.kept_to_plan;
   EXPECT_EQ(run.mesh.live(), 0U);
   EXPECT_EQ(setup.budget.used(), 0U);
@@ -69,8 +69,8 @@ TEST(EarlyTriangulation, OfASurveyIsThatOfAllPoints) {
   const EarlyRun early = run<2>(RegionStream(regions));
   EXPECT_TRUE(early.is_early);
   EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
-  EXPECT_EQ(early.figures.mesh.points, 20'000U);
-  EXPECT_EQ(early.figures.mesh.vertices, 20'000U);
+  EXPECT_EQ(early.statistics.mesh.points, 20'000U);
+  EXPECT_EQ(early.statistics.mesh.vertices, 20'000U);
 }
 
 TEST(EarlyTriangulation, OfSpaceIsThatOfAllPoints) {
@@ -82,8 +82,8 @@ TEST(EarlyTriangulation, OfSpaceIsThatOfAllPoints) {
 
 TEST(EarlyTriangulation, WritesItsFirstBlockEarlyAndSpillsNothing) {
   const EarlyRun early = run<2>(RegionStream(survey(12, 60'000, 3)));
-  EXPECT_THAT(early.figures.first_block_read_points, Lt(9'000U));
-  EXPECT_EQ(early.figures.spilled_points, 0U);
+  EXPECT_THAT(early.statistics.first_block_read_points, Lt(9'000U));
+  EXPECT_EQ(early.statistics.spilled_points, 0U);
 }
 
 TEST(EarlyTriangulation, IsTheSameForAnyNumberOfThreads) {
@@ -108,7 +108,7 @@ TEST(EarlyTriangulation, TakesEqualPointsOfSeveralInputsInTheInputsOrder) {
     EXPECT_TRUE(early.is_early);
     EXPECT_FALSE(late.is_early);
     EXPECT_EQ(simplices_of<2>(early.mesh), simplices_of<2>(late.mesh));
-    EXPECT_EQ(early.figures.mesh.canonical_hash, late.figures.mesh.canonical_hash);
+    EXPECT_EQ(early.statistics.mesh.canonical_hash, late.statistics.mesh.canonical_hash);
     const auto heights = [](const EarlyRun& run) {
       return std::multiset<LatticePoint>(run.mesh.vertices.begin(), run.mesh.vertices.end());
     };
@@ -122,8 +122,8 @@ TEST(EarlyTriangulation, SpillsPointsThatWaitLongestWhereMemoryIsLittle) {
   options.buffered_points = 6'000;
   const EarlyRun early = run<2>(RegionStream(regions), options);
   EXPECT_TRUE(early.is_early);
-  EXPECT_THAT(early.figures.spilled_points, Gt(0U));
-  EXPECT_THAT(early.figures.spilled_points, Lt(40'000U));
+  EXPECT_THAT(early.statistics.spilled_points, Gt(0U));
+  EXPECT_THAT(early.statistics.spilled_points, Lt(40'000U));
   EXPECT_EQ(simplices_of<2>(early.mesh), expected_of<2>(regions));
 }
 
@@ -270,9 +270,9 @@ struct ExtentRun : RunSink {
 ExtentRun run_by_extent(RegionStream source, bool trusts = true, double tolerance = 0) {
   ExtentRun run(trusts, tolerance);
   QuietSetup setup(small_tiles());
-  const RunFigures figures = triangulate_stream<2>(
+  const RunStatistics statistics = triangulate_stream<2>(
       source, *run.mesh, {setup.options, *setup.scratch, setup.budget, run, setup.progress});
-  EXPECT_EQ(figures.mesh.points, 20'000U);
+  EXPECT_EQ(statistics.mesh.points, 20'000U);
   EXPECT_EQ(setup.budget.used(), 0U);
   run.times_read = source.times_read;
   run.is_early = source.kept_to_plan;
@@ -343,7 +343,7 @@ struct SecondRun : RunSink, RunProgress {
   int times_read = 0;
   std::vector<std::string> warnings;
   std::vector<std::string> phases;
-  RunFigures figures;
+  RunStatistics statistics;
   std::optional<KeepingWriter> mesh{D};
 };
 
@@ -351,8 +351,8 @@ template <int D>
 SecondRun<D> run_again(RegionStream source) {
   SecondRun<D> run;
   QuietSetup setup(small_tiles());
-  run.figures = triangulate_stream<D>(source, *run.mesh,
-                                      {setup.options, *setup.scratch, setup.budget, run, run});
+  run.statistics = triangulate_stream<D>(source, *run.mesh,
+                                         {setup.options, *setup.scratch, setup.budget, run, run});
   EXPECT_TRUE(source.kept_to_plan);
   EXPECT_EQ(run.mesh->live(), 0U);
   EXPECT_EQ(setup.budget.used(), 0U);
@@ -377,8 +377,8 @@ TEST(EarlyTriangulation, BeginsAgainWhereAPointLiesOutsideOfItsBox) {
         again.warnings,
         ElementsAre("a box is false: all points are read again before any is triangulated"));
     EXPECT_THAT(again.phases, ElementsAre("read", "end", "read", "end", "triangulate", "end"));
-    EXPECT_EQ(again.figures.mesh.points, 20'000U);
-    EXPECT_EQ(again.figures.first_block_read_points, 20'000U);
+    EXPECT_EQ(again.statistics.mesh.points, 20'000U);
+    EXPECT_EQ(again.statistics.first_block_read_points, 20'000U);
     EXPECT_EQ(simplices_of<2>(*again.mesh), expected_of<2>(regions));
   }
 }
@@ -421,14 +421,14 @@ TEST(EarlyTriangulation, BeginsAgainWithTheRightExtentAfterAFalseBox) {
 TEST(EarlyTriangulation, RefusesPointsOfALine) {
   Regions regions(20);
   for (int i = 0; i < 20'000; ++i) regions[i / 1'000].push_back({i * 1.0, i * 2.0, 0});
-  EXPECT_THROW(run<2>(RegionStream(regions)), Error);
+  EXPECT_THROW(run<2>(RegionStream(regions)), Failure);
 }
 
 /// Fails when its third block comes.
 class FullSink : public BlockSink {
  public:
-  void write(MeshBlock&& /*block*/) override {
-    if (++blocks_ == 3) throw Error("the disk is full");
+  void write(MeshStreamBlock&& /*block*/) override {
+    if (++blocks_ == 3) throw Failure("the disk is full");
   }
   void finish(const MeshTotals& /*totals*/) override {}
 
@@ -440,10 +440,10 @@ TEST(EarlyTriangulation, EndsWithTheErrorOfItsSinkBeforeAllIsRead) {
   RegionStream source(survey(20, 200'000, 17), 100);
   FullSink sink;
   QuietSetup setup(small_tiles());
-  EXPECT_THROW(triangulate_stream<2>(source, sink, setup), Error);
+  EXPECT_THROW(triangulate_stream<2>(source, sink, setup), Failure);
   EXPECT_THAT(source.points_read(), Lt(200'000U));
   EXPECT_EQ(setup.budget.used(), 0U);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

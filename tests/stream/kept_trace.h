@@ -6,7 +6,7 @@
 
 #include "stream/plan/run_trace.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 class KeptTrace : public RunTrace {
  public:
@@ -23,4 +23,4 @@ class KeptTrace : public RunTrace {
   RunSums sums;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "stream/checkpoint/resting.h"
 #include "stream/plan/run_setup.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 struct QuietSetup {
   explicit QuietSetup(EngineOptions of, std::uint64_t memory = std::uint64_t{1} << 30)
@@ -29,4 +29,4 @@ struct QuietSetup {
   Resting resting;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

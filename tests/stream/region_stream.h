@@ -14,7 +14,7 @@
 #include "stream/source/false_header.h"
 #include "stream/source/point_stream.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// Regions of points, each an input of its own, in any order. Indices count through the regions as
 /// they are given, whatever the order in which they are read.
@@ -60,10 +60,10 @@ class RegionStream : public PointStream {
     const Box<3>& told = regions_[order_[piece.region]].box;
     const bool is_inside = std::ranges::all_of(
         block.points, [&](const LatticePoint& point) { return told.contains(Point<3>(point)); });
-    if (!is_inside) throw FalseHeader(Error("a point lies outside"), "a box is false");
+    if (!is_inside) throw FalseHeader(Failure("a point lies outside"), "a box is false");
   }
 
-  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override { return lattice_; }
   [[nodiscard]] std::optional<std::uint64_t> expected() const override { return all_; }
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] std::span<const InputRegion> regions() const override { return regions_; }
@@ -100,7 +100,7 @@ class RegionStream : public PointStream {
   std::vector<std::size_t> order_;
   std::vector<std::uint64_t> first_;
   std::uint64_t all_ = 0;
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   std::optional<Box<3>> extent_;
   bool is_planned_ = false;
   std::size_t turn_ = 0;
@@ -135,4 +135,4 @@ inline std::vector<std::vector<LatticePoint>> survey(int files, std::size_t poin
   return regions;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

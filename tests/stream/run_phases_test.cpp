@@ -13,7 +13,7 @@
 #include "tests/stream/region_stream.h"
 #include "tests/stream/stream_runner.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -104,4 +104,4 @@ TEST_F(RunPhasesTest, SaveBetweenPhasesWhereTheyAreToDoSo) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

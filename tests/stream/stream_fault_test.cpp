@@ -14,10 +14,10 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "stream/pipeline.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -37,7 +37,7 @@ class FaultyScratch : public ScratchFolder {
   }
 
   std::unique_ptr<ScratchFile> create(const std::string& label) override {
-    if (fails(Fault::kCreate)) throw Error("injected fault");
+    if (fails(Fault::kCreate)) throw Failure("injected fault");
     const std::string name = label + "-" + std::to_string(count(Fault::kCreate));
     return std::make_unique<File>(*this, name);
   }
@@ -58,12 +58,12 @@ class FaultyScratch : public ScratchFolder {
     File& operator=(const File&) = delete;
 
     void append(std::span<const std::byte> bytes) override {
-      if (owner_.fails(Fault::kAppend)) throw Error("injected fault");
+      if (owner_.fails(Fault::kAppend)) throw Failure("injected fault");
       content_.insert(content_.end(), bytes.begin(), bytes.end());
       owner_.written_ += bytes.size();
     }
     void read(std::uint64_t offset, std::span<std::byte> buffer) const override {
-      if (owner_.fails(Fault::kRead)) throw Error("injected fault");
+      if (owner_.fails(Fault::kRead)) throw Failure("injected fault");
       std::copy_n(content_.begin() + static_cast<std::ptrdiff_t>(offset), buffer.size(),
                   buffer.begin());
       if (owner_.fails(Fault::kFlippedByte)) buffer[buffer.size() / 2] ^= std::byte{1};
@@ -95,13 +95,13 @@ class FailingWriter : public BlockSink {
   enum class Way { kNever, kError, kClosedPipe, kInAbsorb };
   FailingWriter(Way way, int n) : way_(way), failing_(n) {}
 
-  void absorb(MeshBlock&) override {
-    if (way_ == Way::kInAbsorb && ++absorbed_ == failing_) throw Error("injected fault");
+  void absorb(MeshStreamBlock&) override {
+    if (way_ == Way::kInAbsorb && ++absorbed_ == failing_) throw Failure("injected fault");
   }
-  void write(MeshBlock&&) override {
+  void write(MeshStreamBlock&&) override {
     EXPECT_FALSE(failed_) << "a block was written after the output had failed";
     failed_ = ++written_ == failing_ && way_ != Way::kInAbsorb;
-    if (failed_ && way_ == Way::kError) throw Error("injected fault");
+    if (failed_ && way_ == Way::kError) throw Failure("injected fault");
     if (failed_ && way_ == Way::kClosedPipe) throw ClosedPipe();
   }
   void finish(const MeshTotals&) override {}
@@ -120,7 +120,7 @@ constexpr std::uint64_t kPoints = 20'000;
 /// Points of a square, one a line.
 std::string points_as_text(std::uint64_t count) {
   std::string text;
-  for (const Point<2>& p : generate_points<2>({Family::kUniform, count, 2, 3})) {
+  for (const Point<2>& p : generated_points<2>({Family::kUniform, count, 2, 3})) {
     text += std::to_string(p[0]) + " " + std::to_string(p[1]) + " 1\n";
   }
   return text;
@@ -134,21 +134,21 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
     files_.files["points.txt"] = points_as_text(kPoints);
   }
 
-  RunFigures run(BlockSink& writer) {
-    PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
+  RunStatistics run(BlockSink& writer) {
+    JoinedInputs source(files_, {"points.txt"}, {.dimension = 2, .index = true});
     return triangulate(source, writer,
                        {.asked = {.input_index = true, .tile_points = 600, .leaf_points = 200},
                         .threads = GetParam(),
                         .buffered_points = 15'000});
   }
 
-  RunFigures triangulate(PointSource& source, BlockSink& writer, const EngineOptions& options) {
+  RunStatistics triangulate(JoinedInputs& source, BlockSink& writer, const EngineOptions& options) {
     RunSink sink;
     RunProgress progress;
     return triangulate_stream<2>(source, writer, {options, scratch_, budget_, sink, progress});
   }
 
-  /// The message of the Error that the run ends with, after which nothing may be left.
+  /// The message of the Failure that the run ends with, after which nothing may be left.
   std::string error_of_run(FailingWriter::Way way = FailingWriter::Way::kNever, int n = 0) {
     std::string message;
     try {
@@ -157,7 +157,7 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
       ADD_FAILURE() << "the fault went unnoticed";
     } catch (const ClosedPipe&) {
       message = "closed pipe";
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       message = error.what();
     }
     EXPECT_EQ(scratch_.files(), 0);
@@ -165,17 +165,17 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
     return message;
   }
 
-  testing::FaultyFileSystem files_;
+  test::FaultyFileSystem files_;
   FaultyScratch scratch_;
   MemoryBudget budget_{kMemory};
 };
 
 TEST_P(StreamFault, NoneIsNoFault) {
   FailingWriter writer(FailingWriter::Way::kNever, 0);
-  const RunFigures figures = run(writer);
-  EXPECT_GT(figures.spilled_points, 0U);
-  EXPECT_EQ(figures.spilled_bytes, scratch_.bytes_written());
-  EXPECT_EQ(figures.mesh.points, kPoints);
+  const RunStatistics statistics = run(writer);
+  EXPECT_GT(statistics.spilled_points, 0U);
+  EXPECT_EQ(statistics.spilled_bytes, scratch_.bytes_written());
+  EXPECT_EQ(statistics.mesh.points, kPoints);
   EXPECT_EQ(scratch_.files(), 0);
   EXPECT_EQ(budget_.used(), 0U);
 }
@@ -223,9 +223,9 @@ TEST_P(StreamFault, OfTheInputEndsTheRunWhileOthersSpill) {
   text = points_as_text(150'000);  // several blocks
   FailingWriter writer(FailingWriter::Way::kNever, 0);
   run(writer);
-  const int reads = files_.count(testing::Call::kRead);
+  const int reads = files_.count(test::Call::kRead);
   for (const int n : {reads / 2, reads}) {
-    files_.fail(testing::Call::kRead, n);
+    files_.fail(test::Call::kRead, n);
     EXPECT_EQ(error_of_run(), "injected fault");
   }
   text += "1 2 x\n";
@@ -237,12 +237,12 @@ TEST_P(StreamFault, OfTheInputEndsTheRunWhileOthersSpill) {
 }
 
 TEST_P(StreamFault, OfTooLittleMemoryNamesTheOptionThatHelps) {
-  PointSource source(files_, {"points.txt"}, {.dimension = 2, .index = true});
+  JoinedInputs source(files_, {"points.txt"}, {.dimension = 2, .index = true});
   FailingWriter writer(FailingWriter::Way::kNever, 0);
   try {
     triangulate(source, writer, {.threads = GetParam(), .buffered_points = 100'000'000});
     FAIL() << "more was promised than there is";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_EQ(error.facts().remedy, Remedy::kMemory);
   }
   EXPECT_EQ(budget_.used(), 0U);
@@ -252,4 +252,4 @@ INSTANTIATE_TEST_SUITE_P(Threads, StreamFault, ::testing::Values(1, 2, 4),
                          [](const auto& tested) { return std::to_string(tested.param); });
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -19,7 +19,7 @@
 #include "tests/generators/family_cases.h"
 #include "tests/stream/stream_runner.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Tiny tiles that fit into memory, tiny tiles that all go to the disk, one tile of many leaves.
@@ -39,37 +39,37 @@ void expect_equal_to_cgal(const std::vector<Point<D>>& points,
   const std::size_t hull_facets = cgal_hull_facets<D>(points);
   const std::string path = write_points<D>(points);
   for (const EngineOptions& options : ways) {
-    SCOPED_TRACE(testing::Message()
+    SCOPED_TRACE(::testing::Message()
                  << points.size() << " points, tiles of " << options.asked.tile_points
                  << ", leaves of " << options.asked.leaf_points << ", " << options.threads
                  << " threads");
     if (expected.empty()) {
-      EXPECT_THROW(run_stream<D>(path, options), Error);
+      EXPECT_THROW(run_stream<D>(path, options), Failure);
       continue;
     }
     const StreamRun run = run_stream<D>(path, options);
     ASSERT_TRUE(simplices_of<D>(run.mesh) == expected)
-        << run.figures.mesh.simplices << " simplices, CGAL has " << expected.size();
-    EXPECT_EQ(run.figures.mesh.hull_facets, hull_facets);
-    EXPECT_EQ(run.figures.mesh.simplices, expected.size());
-    EXPECT_EQ(run.figures.mesh.vertices + run.figures.mesh.duplicates, points.size());
+        << run.statistics.mesh.simplices << " simplices, CGAL has " << expected.size();
+    EXPECT_EQ(run.statistics.mesh.hull_facets, hull_facets);
+    EXPECT_EQ(run.statistics.mesh.simplices, expected.size());
+    EXPECT_EQ(run.statistics.mesh.vertices + run.statistics.mesh.duplicates, points.size());
     EXPECT_EQ(run.mesh.live(), 0U) << "vertices never finalized";
   }
   std::filesystem::remove(path);
 }
 
-class StreamOfFamily : public testing::TestWithParam<FamilyCase> {};
+class StreamOfFamily : public ::testing::TestWithParam<FamilyCase> {};
 
 TEST_P(StreamOfFamily, EqualsCgalForSmallSetsInTinyTiles) {
   for (const std::uint64_t n : {0, 1, 2, 3, 4, 5, 7, 12, 30, 100, 500, 2000}) {
     if (GetParam().dimension == 3 && n > 1000) continue;
     for (const std::uint64_t seed : {1, 2}) {
       const GeneratorOptions generate{GetParam().family, n, GetParam().dimension, seed};
-      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed);
       if (GetParam().dimension == 2) {
-        expect_equal_to_cgal<2>(generate_points<2>(generate), kManyWays);
+        expect_equal_to_cgal<2>(generated_points<2>(generate), kManyWays);
       } else {
-        expect_equal_to_cgal<3>(generate_points<3>(generate), kManyWays);
+        expect_equal_to_cgal<3>(generated_points<3>(generate), kManyWays);
       }
     }
   }
@@ -86,26 +86,27 @@ TEST_P(StreamOfFamily, EqualsCgalForLargeSetsThatSpill) {
        .buffered_points = n / 5},
       {.asked = {.tile_points = n / 3}, .threads = 4, .buffered_points = n / 2}};
   if (GetParam().dimension == 2) {
-    expect_equal_to_cgal<2>(generate_points<2>(generate), ways);
+    expect_equal_to_cgal<2>(generated_points<2>(generate), ways);
   } else {
-    expect_equal_to_cgal<3>(generate_points<3>(generate), ways);
+    expect_equal_to_cgal<3>(generated_points<3>(generate), ways);
   }
 }
 
 /// The blocks of a set out of core.
-std::vector<MeshBlock> blocks_of(const GeneratorOptions& generate, const EngineOptions& options) {
+std::vector<MeshStreamBlock> blocks_of(const GeneratorOptions& generate,
+                                       const EngineOptions& options) {
   if (generate.dimension == 2) {
-    const std::string path = write_points<2>(generate_points<2>(generate));
+    const std::string path = write_points<2>(generated_points<2>(generate));
     return run_stream<2>(path, options).mesh.blocks;
   }
-  const std::string path = write_points<3>(generate_points<3>(generate));
+  const std::string path = write_points<3>(generated_points<3>(generate));
   return run_stream<3>(path, options).mesh.blocks;
 }
 
 /// The same for one thread and for several.
 void expect_same_blocks(const GeneratorOptions& generate, EngineOptions options) {
   options.threads = 1;
-  const std::vector<MeshBlock> once = blocks_of(generate, options);
+  const std::vector<MeshStreamBlock> once = blocks_of(generate, options);
   for (const unsigned threads : {2U, 4U}) {
     options.threads = threads;
     const auto again = blocks_of(generate, options);
@@ -124,7 +125,7 @@ TEST_P(StreamOfFamily, GivesTheSameBlocksForAnyThreadCount) {
   try {
     expect_same_blocks(generate,
                        {.asked = {.tile_points = 90, .leaf_points = 20}, .buffered_points = 200});
-  } catch (const Error&) {
+  } catch (const Failure&) {
     GTEST_SKIP() << "no simplices in this dimension";
   }
 }
@@ -134,7 +135,7 @@ TEST(StreamOfSurface, GivesTheSameBlocksForAnyThreadCountByItsSketches) {
     for (const Family family : {Family::kEllipsoid, Family::kScan}) {
       if (dimension == 2 && family == Family::kScan) continue;
       for (const std::size_t buffered : {4'000, 100'000}) {
-        SCOPED_TRACE(testing::Message() << dimension << "D, " << buffered << " points wait");
+        SCOPED_TRACE(::testing::Message() << dimension << "D, " << buffered << " points wait");
         expect_same_blocks(
             {family, 12'000, dimension, 3},
             {.asked = {.tile_points = 2'500, .leaf_points = 400}, .buffered_points = buffered});
@@ -146,7 +147,7 @@ TEST(StreamOfSurface, GivesTheSameBlocksForAnyThreadCountByItsSketches) {
 /// Points of a circle or a sphere: all of them stay in the border, and on the hull, to the end.
 template <int D>
 std::string write_round_points(std::uint64_t count) {
-  return write_points<D>(generate_points<D>({Family::kCircle, count, D, 5}));
+  return write_points<D>(generated_points<D>({Family::kCircle, count, D, 5}));
 }
 
 template <int D>
@@ -155,14 +156,14 @@ void expect_written_in(const std::vector<const MeshFormat*>& formats) {
   MeshStreamHeader header;
   header.dimension = D;
   for (const MeshFormat* const format : formats) {
-    SCOPED_TRACE(testing::Message() << D << "D, format " << format->name);
-    PointSource source(disk(), {path}, {.dimension = D});
-    const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+    SCOPED_TRACE(::testing::Message() << D << "D, format " << format->name);
+    JoinedInputs source(disk(), {path}, {.dimension = D});
+    const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
     const std::string mesh = path + ".mesh";
     const auto writer = open_mesh_stream_writer(disk(), mesh, *format, header, *scratch);
     QuietSetup setup({.asked = {.tile_points = 700, .leaf_points = 100}, .threads = 2});
-    const RunFigures figures = triangulate_stream<D>(source, *writer, setup);
-    EXPECT_NO_THROW(writer->finish(figures.mesh));
+    const RunStatistics statistics = triangulate_stream<D>(source, *writer, setup);
+    EXPECT_NO_THROW(writer->finish(statistics.mesh));
     std::filesystem::remove(mesh);
   }
   std::filesystem::remove(path);
@@ -193,8 +194,8 @@ TEST(StreamOfBorderOnly, IsRefusedWithTheMemoryThatIsEnough) {
   expect_named_memory_is_enough<3>(70'000, std::uint64_t{96} << 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, testing::ValuesIn(all_family_cases()),
+INSTANTIATE_TEST_SUITE_P(Families, StreamOfFamily, ::testing::ValuesIn(all_family_cases()),
                          family_case_name);
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

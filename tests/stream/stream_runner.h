@@ -17,10 +17,10 @@
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 #include "tests/stream/quiet_setup.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// What the points of a test carry: their number in the input, and its lowest byte, so that records
 /// have an odd size.
@@ -53,7 +53,7 @@ class KeepingWriter : public BlockSink {
  public:
   explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
 
-  void write(MeshBlock&& block) override {
+  void write(MeshStreamBlock&& block) override {
     ASSERT_EQ(block.corners.size() % corners_, 0U);
     const StreamNumbers numbers(live_.announced(), block);
     for (const std::uint64_t v : block.imported) {
@@ -88,7 +88,7 @@ class KeepingWriter : public BlockSink {
   std::vector<LatticePoint> vertices;
   std::vector<std::uint64_t> index;
   std::vector<std::uint64_t> corner_list;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
   std::size_t most_live = 0;
   bool has_attributes = false;
 
@@ -101,7 +101,7 @@ class KeepingWriter : public BlockSink {
 /// `first_number` on.
 template <int D>
 std::string write_points(const std::vector<Point<D>>& points, std::uint64_t first_number = 0) {
-  const std::string path = testing::TempDir() + "points" + std::to_string(::getpid()) + ".npy";
+  const std::string path = ::testing::TempDir() + "points" + std::to_string(::getpid()) + ".npy";
   PointWriterOptions options;
   options.coordinates = D;
   options.count = points.size();
@@ -121,7 +121,7 @@ std::string write_points(const std::vector<Point<D>>& points, std::uint64_t firs
 }
 
 struct StreamRun {
-  RunFigures figures;
+  RunStatistics statistics;
   KeepingWriter mesh;
 };
 
@@ -130,13 +130,13 @@ StreamRun run_stream(const std::string& path, EngineOptions options,
                      std::uint64_t memory = std::uint64_t{1} << 30) {
   StreamRun run{{}, KeepingWriter(D)};
   options.asked.input_index = true;
-  PointSource source(disk(), {path}, {.dimension = D, .index = true});
+  JoinedInputs source(disk(), {path}, {.dimension = D, .index = true});
   if (carries_attributes(options)) {
     source.carry({.all = true});
     options.record_size = source.attributes().record_size();
   }
   QuietSetup setup(options, memory);
-  run.figures = triangulate_stream<D>(source, run.mesh, setup);
+  run.statistics = triangulate_stream<D>(source, run.mesh, setup);
   EXPECT_EQ(run.mesh.has_attributes, carries_attributes(options));
   return run;
 }
@@ -153,4 +153,4 @@ std::vector<std::array<VertexId, D + 1>> simplices_of(const KeepingWriter& mesh)
   return simplices;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

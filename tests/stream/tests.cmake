@@ -1,5 +1,5 @@
 spillway_test(stream_unit_test unit
-  SOURCES stream/output/heights_test.cpp stream/output/open_facets_test.cpp
+  SOURCES stream/output/heights_test.cpp stream/output/unpaired_facets_test.cpp
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/contour_shares_test.cpp stream/sinks/contour_test.cpp
           stream/sinks/line_joiner_test.cpp stream/sinks/raster_store_test.cpp
@@ -40,7 +40,7 @@ spillway_test(point_input_test unit
           stream/source/input_crs_test.cpp stream/source/input_regions_test.cpp
           stream/source/ordered_blocks_test.cpp stream/source/piece_sequence_test.cpp
           stream/source/point_filter_test.cpp stream/source/thinning/point_runs_test.cpp
-          stream/source/point_source_test.cpp stream/source/source_coordinates_test.cpp
+          stream/source/joined_inputs_test.cpp stream/source/source_coordinates_test.cpp
           stream/source/source_crs_test.cpp stream/source/source_facts_test.cpp stream/source/thinning/thinning_test.cpp
   LIBS spillway_stream fmt::fmt)
 

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr GroundScale kWgs84{.degrees = 1, .semi_major = 6378137, .flattening = 1 / 298.257223563};
@@ -40,4 +40,4 @@ TEST(GroundScale, OfLengthsIsOne) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -11,12 +11,12 @@
 #include "src/terrain/grid_choice.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::box_of;
-using testing::square_points;
-using testing::triangles_of;
+using test::box_of;
+using test::square_points;
+using test::triangles_of;
 
 /// Calls `expect` for each pixel of each triangle.
 void for_all_pixels(
@@ -169,4 +169,4 @@ TEST(GridChoice, PixelsHoldTheirWesternAndNorthernEdgesAndTheLastOneBoth) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "src/terrain/triangle_pixels.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 using HeightOf = std::function<double(double x, double y)>;
 
@@ -31,7 +31,7 @@ inline std::vector<Point<2>> square_points(std::size_t count, double side, bool 
 /// All triangles of the Delaunay triangulation, counter-clockwise.
 inline std::vector<Triangle> triangles_of(const std::vector<Point<2>>& points,
                                           const HeightOf& height) {
-  const Triangulation<2> mesh = delaunay<2>(points, {.threads = 1});
+  const Triangulation<2> mesh = delaunay_triangulation<2>(points, {.threads = 1});
   std::vector<Triangle> triangles;
   for (const auto& list : mesh.lists) {
     for (const auto& simplex : list.simplices) {
@@ -67,4 +67,4 @@ inline int edges_touched(const Triangle& triangle, const Point<2>& p) {
   return touched;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

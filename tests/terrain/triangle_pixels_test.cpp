@@ -9,13 +9,13 @@
 #include "src/error.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::box_of;
-using testing::edges_touched;
-using testing::square_points;
-using testing::triangles_of;
+using test::box_of;
+using test::edges_touched;
+using test::square_points;
+using test::triangles_of;
 
 double level(double /*x*/, double /*y*/) { return 0; }
 
@@ -152,7 +152,7 @@ TEST(TrianglePixels, ATriangleWithoutAreaHasNoPixels) {
 }
 
 TEST(PixelCentres, CentresOfALatticeAreItsIntegersWhereTheyFallOnThem) {
-  const Lattice lattice{{0.01, 0.01, 0.01}, {600000, 5400000, 0}};
+  const IntegerLattice lattice{{0.01, 0.01, 0.01}, {600000, 5400000, 0}};
   const PixelCentres centres({600000.1, 5400010.1, 0.2, 20, 20}, lattice);
   for (std::uint32_t c = 0; c < 20; ++c) {
     EXPECT_EQ(centres.x()[c], 20.0 * (c + 1));
@@ -165,4 +165,4 @@ TEST(PixelCentres, TooFineAResolutionIsRefused) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

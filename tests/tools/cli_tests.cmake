@@ -1,7 +1,7 @@
 # The command, run as a process, and its parts that need none.
 spillway_test(command_unit_tests unit
   SOURCES tools/command_unit_test.cpp tools/options/help_layout_test.cpp
-    tools/options/suggestion_test.cpp tools/process/program_pages_test.cpp
+    tools/options/former_names_test.cpp tools/options/suggestion_test.cpp tools/process/program_pages_test.cpp
     tools/report/advice_test.cpp
     tools/simulate/core_simulation_test.cpp tools/simulate/machine_test.cpp
     tools/simulate/run_player_test.cpp tools/simulate/run_recorder_test.cpp

@@ -13,7 +13,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ fs::path shared_file(const std::string& name) {
   return fs::exists(path) ? path : fs::path();
 }
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 struct Result {
   int exit_code;  ///< 128 + signal if it was killed
@@ -68,4 +68,4 @@ inline constexpr const char* kNoGdal = "rasters, contours and the like take GDAL
 /// A file of the shared sample data, or an empty path if that folder is not there.
 std::filesystem::path shared_file(const std::string& name);
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

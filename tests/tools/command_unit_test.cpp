@@ -18,7 +18,7 @@
 #include "tools/report/progress_line.h"
 #include "tools/report/speed_up_estimate.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<std::string> long_names(const CommandLine& app) {
@@ -57,15 +57,15 @@ TEST(OptionNames, AreThoseThatThereAre) {
   InputOptions input_options;
   add_input_options(input, input_options);
   std::vector<std::string> known(kInputOptionNames.begin(), kInputOptionNames.end());
-  EXPECT_THAT(long_names(input), testing::UnorderedElementsAreArray(known));
+  EXPECT_THAT(long_names(input), ::testing::UnorderedElementsAreArray(known));
   CommandLine all;
   TriangulationOptions options;
   add_triangulation_options(all, options);
   known.insert(known.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
   // These have an effect on a mesh, or are settings for any work.
   known.insert(known.end(),
-               {"--max-edge", "--threads", "--memory", "--tmpdir", "--max-tmp", "--stats"});
-  EXPECT_THAT(long_names(all), testing::UnorderedElementsAreArray(known));
+               {"--max-edge", "--threads", "--memory", "--scratch-folder", "--max-tmp", "--stats"});
+  EXPECT_THAT(long_names(all), ::testing::UnorderedElementsAreArray(known));
 }
 
 TEST(ProgressLine, ShowsWhatIsKnown) {
@@ -100,9 +100,9 @@ TEST(ProgressJson, LeavesUnknownsNull) {
 }
 
 TEST(ProgressOnATerminal, WhereTheInputIsAPipeShowsTheLineFromTheSecondPhaseOn) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   {
-    Progress progress(ProgressStyle::kTerminalOfAPipe, false, false);
+    ProgressLine progress(ProgressStyle::kTerminalOfAPipe, false, false);
     for (const char* const phase : {"read", "divide"}) {
       progress.begin(phase, "points");
       progress.update(200, 0.5);
@@ -110,23 +110,23 @@ TEST(ProgressOnATerminal, WhereTheInputIsAPipeShowsTheLineFromTheSecondPhaseOn) 
       progress.end(400);
     }
   }
-  const std::string shown = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(shown, testing::Not(testing::HasSubstr("read")));
-  EXPECT_THAT(shown, testing::HasSubstr("divide: 200 points"));
+  const std::string shown = ::testing::internal::GetCapturedStderr();
+  EXPECT_THAT(shown, ::testing::Not(::testing::HasSubstr("read")));
+  EXPECT_THAT(shown, ::testing::HasSubstr("divide: 200 points"));
   EXPECT_TRUE(shown.ends_with("\r\x1b[K")) << "the line is wiped at the end";
 }
 
 TEST(ProgressOfThreads, TheMostCountsInWhateverOrderTheySayIt) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   {
-    Progress progress(ProgressStyle::kJson, false, false);
+    ProgressLine progress(ProgressStyle::kJson, false, false);
     progress.begin("triangulate", "points");
     progress.update(200, 0.5);
     progress.update(100, 0.25);
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     progress.end(400);
   }
-  std::istringstream lines(testing::internal::GetCapturedStderr());
+  std::istringstream lines(::testing::internal::GetCapturedStderr());
   std::string line;
   ASSERT_TRUE(std::getline(lines, line));
   const auto state = nlohmann::json::parse(line);
@@ -145,4 +145,4 @@ TEST(JsonText, BytesThatAreNoTextDoNotFail) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

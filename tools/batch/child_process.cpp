@@ -17,7 +17,7 @@
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,7 +89,7 @@ pid_t ChildProcesses::start(const std::vector<std::string>& arguments, const std
   const pid_t child = fork();
   if (child == 0) become(pointers.data(), log, parent);
   if (child < 0) {
-    throw Error(fmt::format(
+    throw Failure(fmt::format(
         "cannot start a process: {}; raise the limit of processes (ulimit -u), or ask for fewer "
         "jobs at a time (-j)",
         std::strerror(errno)));
@@ -105,7 +105,7 @@ ChildEnd ChildProcesses::wait_for_any() {
     const int reason = errno;
     if (reason == EINTR) continue;
     lock_unless_stopped();
-    throw Error(fmt::format("cannot wait for a process: {}", std::strerror(reason)));
+    throw Failure(fmt::format("cannot wait for a process: {}", std::strerror(reason)));
   }
   const int exit_code = ended.si_code == CLD_EXITED ? ended.si_status : 128 + ended.si_status;
   if (is_interrupted(exit_code)) std::this_thread::sleep_for(kOneSignal);
@@ -152,4 +152,4 @@ void ChildProcesses::kill_all() {
   for (const fs::path& path : left) fs::remove_all(path, ignored);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// How a child ended.
 struct ChildEnd {
@@ -31,7 +33,7 @@ class ChildProcesses {
 
   /// Starts this program with these arguments, to make the file `output`, without standard input
   /// and output; its messages go to the descriptor `log`. With "" for `output`, stop() leaves what
-  /// is unfinished of it. Throws Error with the system's reason.
+  /// is unfinished of it. Throws Failure with the system's reason.
   pid_t start(const std::vector<std::string>& arguments, const std::string& output, int log);
 
   /// Waits until one of the children has ended. There must be one.
@@ -54,4 +56,4 @@ class ChildProcesses {
   bool stopped_ = false;                  // guarded by mutex_
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -11,7 +11,7 @@
 #include "src/error.h"
 #include "tools/options/input_options.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 Box<2> plane_of_extent(const std::optional<Extent>& extent) {
@@ -26,7 +26,7 @@ std::string value_of(const Job& job, const std::string& option) {
 void refuse_what_opens_once(const std::string& path) {
   std::error_code unknown;
   if (std::filesystem::is_regular_file(path, unknown)) return;
-  throw Error(path + ": this is no file, so it can be read by one job only, and not twice");
+  throw Failure(path + ": this is no file, so it can be read by one job only, and not twice");
 }
 
 }  // namespace
@@ -38,15 +38,15 @@ std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context
   given.skip_invalid = job.options.contains("skip-invalid");
   given.salvage = job.options.contains("salvage");
   const PointOptions options = point_options(given, 2);
-  const bool distrusts = job.options.contains("distrust-headers");
+  const bool distrusts = job.options.contains("no-trust-headers");
   const bool skips = job.options.contains("skip-broken");
   std::vector<InputPlace> places;
-  for (const std::string& path : spillway::expand_inputs(job.inputs, context)) {
+  for (const std::string& path : expand_inputs(job.inputs, context)) {
     refuse_what_opens_once(path);
     std::optional<PointsHeader> header;
     try {
       header = spillway::open_points({path}, options, context)->header();
-    } catch (const Error&) {
+    } catch (const Failure&) {
       if (!skips) throw;
       continue;  // the job itself names it
     }
@@ -80,4 +80,4 @@ Box<2> widened(Box<2> box, double by) {
   return box;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -11,7 +11,7 @@
 #include "src/geometry/box.h"
 #include "tools/batch/job_list.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Where the points of a file lie.
 struct InputPlace {
@@ -26,7 +26,7 @@ enum class PlaceSurvey {
   kPoints,   ///< where a header does not tell, or is not trusted, all points are read
 };
 
-/// The places of a job's inputs, which headers tell. Throws Error for an input that cannot be read.
+/// The places of a job's inputs, which headers tell. Throws Failure for an input that cannot be read.
 std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context& context);
 
 /// One name for a file, whatever it is called; and those of several.
@@ -36,4 +36,4 @@ std::set<std::string> identities(const std::vector<InputPlace>& places);
 /// A box with so much around it.
 Box<2> widened(Box<2> box, double by);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -15,7 +15,7 @@
 #include "tools/batch/job_steps.h"
 #include "tools/batch/touching_jobs.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 using Places = std::vector<InputPlace>;
@@ -100,7 +100,7 @@ std::vector<Places> places_of_all(const std::vector<Job>& jobs, PlaceSurvey how,
   for (const Job& job : jobs) {
     try {
       places.push_back(places_of(job, how, context));
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       places.emplace_back();
       if (how == PlaceSurvey::kHeaders) continue;  // the job itself says so
       warn(fmt::format("{} has no buffer, and its neighbours have nothing of it: {}", job.name,
@@ -141,4 +141,4 @@ void add_buffers(std::vector<Job>& jobs, const Context& context, const Warn& war
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -9,7 +9,7 @@
 
 #include "tools/batch/job_list.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Gives each job that has a buffer the inputs of the others that reach into it, in the order of
 /// the jobs, so that the first of equal points is that of a run of all inputs; and the area of its
@@ -18,4 +18,4 @@ namespace spillway::detail {
 void add_buffers(std::vector<Job>& jobs, const Context& context,
                  const std::function<void(const std::string&)>& warn);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

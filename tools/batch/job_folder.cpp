@@ -9,7 +9,7 @@
 #include "formats/disk/output_check.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Whether a job reads one mesh in place of points. What cannot be opened is told by the job.
@@ -18,13 +18,13 @@ bool reads_a_mesh(const Job& job) {
   if (job.options.contains("mesh-format")) return true;
   const std::string& path = job.inputs.front();
   // What a pipe gives can be read once.
-  if (job.inputs.size() > 1 || spillway::stands_for_several(path) ||
+  if (job.inputs.size() > 1 || stands_for_several(path) ||
       !std::filesystem::is_regular_file(path)) {
     return false;
   }
   try {
-    return spillway::kind_of_input(path, Context()) == InputKind::kMesh;
-  } catch (const spillway::Error&) {
+    return kind_of_input(path, Context()) == InputKind::kMesh;
+  } catch (const Error&) {
     return false;
   }
 }
@@ -40,4 +40,4 @@ void wait_until_unused(const std::string& folder) {
   const FolderLock lock((std::filesystem::path(folder) / "").string());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

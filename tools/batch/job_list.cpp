@@ -16,9 +16,10 @@
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
+#include "tools/options/former_names.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 std::string read_text(const std::string& path) {
@@ -50,15 +51,15 @@ Json parse_list(const std::string& path) {
     try {
       return parse_json(text);
     } catch (const JsonError& error) {
-      throw Error(
+      throw Failure(
           fmt::format("{}, byte {}: this is not JSON; {}", path, error.byte(), error.what()));
     }
   }
   try {
     return json_of(toml::parse(text));
   } catch (const toml::parse_error& error) {
-    throw Error(fmt::format("{}, line {}: this is not TOML; {}", path, error.source().begin.line,
-                            error.description()));
+    throw Failure(fmt::format("{}, line {}: this is not TOML; {}", path, error.source().begin.line,
+                              error.description()));
   }
 }
 
@@ -91,7 +92,7 @@ class ListReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("{}: {}", where_, what));
+    throw Failure(fmt::format("{}: {}", where_, what));
   }
 
   void expect_keys(const Json& object, const std::set<std::string>& known) const {
@@ -124,7 +125,8 @@ class ListReader {
 
   void add_options(const Json& object, JobOptions& options) const {
     if (!object.is_object()) fail("\"options\" is not a table of names and values");
-    for (const auto& [name, value] : object.members()) {
+    for (const auto& [given_name, value] : object.members()) {
+      const std::string name = present_name(given_name);
       if (value.is_boolean()) {
         options.erase(name);
         if (value.boolean()) options[name] = {};
@@ -168,8 +170,8 @@ void check_jobs(const std::vector<Job>& jobs) {
           fmt::format("{}: a job of a batch cannot read standard input: name a file", job.name));
     }
     if (job.name.empty() || job.name.starts_with('.') || job.name.find('/') != std::string::npos) {
-      throw Error(fmt::format("\"{}\" cannot be the name of a job: its files are named after it",
-                              job.name));
+      throw Failure(fmt::format("\"{}\" cannot be the name of a job: its files are named after it",
+                                job.name));
     }
     const auto [known, is_new] = input_of_name.try_emplace(job.name, job.inputs.front());
     if (!is_new) {
@@ -209,4 +211,4 @@ std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
   return jobs;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -8,7 +8,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Options by their long names without dashes; flags have no values.
 using JobOptions = std::map<std::string, std::vector<std::string>>;
@@ -33,7 +33,7 @@ struct Job {
 
 /// The jobs of a list, a file in JSON or TOML; `to` and `options` are what the command line says:
 /// the command line's options go before the list's, its `to` serves where the list has none.
-/// Relative paths are those of the list's folder. Throws Error that names the list, the job and the
+/// Relative paths are those of the list's folder. Throws Failure that names the list, the job and the
 /// key.
 std::vector<Job> read_job_list(const std::string& path, const std::vector<std::string>& to,
                                const JobOptions& options);
@@ -45,4 +45,4 @@ std::vector<Job> jobs_of_files(const std::vector<std::string>& files,
 /// Whether `path` is a job list by its extension: .json or .toml.
 bool is_job_list(const std::string& path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

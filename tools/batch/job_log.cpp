@@ -11,7 +11,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// A line is not longer, or its end will do.
@@ -29,7 +29,8 @@ JobLog::JobLog(const std::string& path) : descriptor_(-1) {
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
   if (descriptor_ < 0) {
-    throw Error(fmt::format("cannot create {}: {}", path, std::generic_category().message(errno)));
+    throw Failure(
+        fmt::format("cannot create {}: {}", path, std::generic_category().message(errno)));
   }
 }
 
@@ -49,4 +50,4 @@ std::string JobLog::last_line() const {
   return std::string(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

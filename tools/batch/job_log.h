@@ -2,12 +2,14 @@
 
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// The file that the messages of a job go to. Stays the job's own, whatever becomes of its name.
 class JobLog {
  public:
-  /// Creates an empty file in place of what is there. Throws Error with the system's reason.
+  /// Creates an empty file in place of what is there. Throws Failure with the system's reason.
   explicit JobLog(const std::string& path);
   ~JobLog();
   JobLog(const JobLog&) = delete;
@@ -23,4 +25,4 @@ class JobLog {
   int descriptor_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -19,7 +19,7 @@
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,7 +91,7 @@ bool can_go_on(const JobRun& run) {
 
 Json input_fingerprints(const Job& job) {
   Json json = Json::array();
-  for (const std::string& input : spillway::expand_inputs(job.inputs, Context())) {
+  for (const std::string& input : expand_inputs(job.inputs, Context())) {
     json.push_back(fingerprint(input));
   }
   return json;
@@ -141,4 +141,4 @@ std::optional<std::uint64_t> memory_to_go_on_with(const JobRun& run) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

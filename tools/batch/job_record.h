@@ -10,7 +10,7 @@
 #include "formats/bytes/json.h"
 #include "tools/batch/job_steps.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// A job under way, or done.
 struct JobRun {
@@ -26,7 +26,7 @@ struct JobRun {
   Json inputs;  ///< input_fingerprints() when it began
 };
 
-/// Size and time of change of all inputs, to be taken before a job begins. Throws Error if there
+/// Size and time of change of all inputs, to be taken before a job begins. Throws Failure if there
 /// are none.
 Json input_fingerprints(const Job& job);
 
@@ -45,4 +45,4 @@ bool is_complete_and_unchanged(const JobRun& run);
 /// other. Nothing if it has to begin.
 std::optional<std::uint64_t> memory_to_go_on_with(const JobRun& run);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -14,7 +14,7 @@
 #include "tools/options/input_options.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// What the first part of a kind like "slope.tif" stands for.
@@ -47,8 +47,8 @@ constexpr std::array kNeeded = {
 
 /// Options that a batch shares out among its jobs, or decides for them.
 constexpr std::array<std::string_view, 11> kShared = {
-    "threads", "memory", "tmpdir", "max-tmp", "progress",        "quiet",
-    "verbose", "output", "stats",  "resume",  "checkpoint-every"};
+    "threads", "memory", "scratch-folder", "max-tmp", "progress",        "quiet",
+    "verbose", "output", "stats",          "resume",  "checkpoint-every"};
 
 OutputKind kind_by_name(const Job& job, const std::string& name) {
   const std::size_t dot = name.find('.');
@@ -248,7 +248,7 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
       });
     }
     if (name == "force-crs" && job.options.contains("like")) return true;
-    if (products == "density" && (name == "max-edge" || name == "duplicates")) return false;
+    if (products == "density" && (name == "max-edge" || name == "heights")) return false;
   }
   if (makes_raster(job) && (name == "bounds" || name == "resolution")) return subcommand == "dem";
   return of_points || !has_option("triangulate", name);
@@ -300,4 +300,4 @@ void JobPlanner::check_options(const Job& job, const std::vector<JobStep>& steps
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 #include "tools/batch/job_list.h"
 #include "tools/options/command_line.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// A kind of output: what makes it, and how.
 struct OutputKind {
@@ -62,4 +62,4 @@ Box<2> wanted_place(const Job& job);
 /// The subcommands whose options a job may have.
 const std::vector<std::string>& job_subcommands();
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

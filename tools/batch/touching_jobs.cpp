@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Tiles whose points end before the edge of the tile: by so much of its shorter side, or by so
@@ -69,4 +69,4 @@ std::vector<bool> find_touching(const std::vector<std::vector<InputPlace>>& plac
   return touches;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

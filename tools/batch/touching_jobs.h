@@ -4,7 +4,7 @@
 
 #include "tools/batch/input_places.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// For each job, whether the boxes of its inputs touch or overlap those of another one. They touch
 /// where what is between them is as narrow as between points of one survey. Jobs that have a file
@@ -12,4 +12,4 @@ namespace spillway::detail {
 /// one area.
 std::vector<bool> find_touching(const std::vector<std::vector<InputPlace>>& places);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -35,7 +35,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -119,22 +119,22 @@ void add_options_of_subcommands(const CommandLine& root, CommandLine& app, Batch
 std::string make_scratch(const MemoryOptions& options) {
   try {
     return make_temporary_folder(scratch_parent(options.scratch_parent), "spillway-batch-");
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     throw SystemRefusal(error.what(), error.facts().file, 0, Remedy::kScratchFolder);
   }
 }
 
-/// Makes the folder of the outputs. Throws Error if that cannot be done, or nothing can be written
+/// Makes the folder of the outputs. Throws Failure if that cannot be done, or nothing can be written
 /// there.
 void make_output_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw Error(fmt::format("--output-dir: cannot create the folder {}: {}; choose another one",
-                            folder, error.message()));
+    throw Failure(fmt::format("--output-dir: cannot create the folder {}: {}; choose another one",
+                              folder, error.message()));
   }
   if (::access((folder + "/.").c_str(), W_OK | X_OK) != 0) {
-    throw Error(fmt::format(
+    throw Failure(fmt::format(
         "--output-dir: cannot write to {}: {}; choose another folder, or change its permissions",
         folder, std::generic_category().message(errno)));
   }
@@ -241,8 +241,7 @@ class Batch {
     }
     if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
     const Context context({.warning = [this](std::string_view text) { progress_.say(text); }});
-    return jobs_of_files(spillway::expand_inputs(options_.sources, context), options_.to,
-                         passed_on);
+    return jobs_of_files(expand_inputs(options_.sources, context), options_.to, passed_on);
   }
 
   [[nodiscard]] std::size_t at_a_time() const {
@@ -320,7 +319,7 @@ class Batch {
     if (const std::string& cap = options_.memory.scratch_cap; !cap.empty()) {
       add("max-tmp", std::to_string(parse_memory_size(cap) / limit_));
     }
-    add("tmpdir", temporary_);
+    add("scratch-folder", temporary_);
     add("progress", "none");
     const bool can_go_on = job.step == 0 && keeps_checkpoints(*job.run);
     if (can_go_on) {
@@ -398,7 +397,7 @@ class Batch {
 
   const CommandLine& root_;
   const BatchOptions& options_;
-  Progress progress_;
+  ProgressLine progress_;
   std::vector<JobRun> runs_;
   std::deque<JobRun*> waiting_;
   std::map<pid_t, Running> running_;
@@ -461,4 +460,4 @@ Subcommand add_batch(CommandLine& root) {
           }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

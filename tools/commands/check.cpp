@@ -19,7 +19,7 @@
 #include "tools/report/printable_text.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -50,7 +50,7 @@ struct Outcome {
   int dimension;
 };
 
-Outcome check_input(const CheckCommandOptions& options, Progress& progress) {
+Outcome check_input(const CheckCommandOptions& options, ProgressLine& progress) {
   // Memory is for the points alone.
   const MemoryOptions memory = options.points.empty() ? MemoryOptions{} : options.memory;
   const Context context(context_options(memory, options.threads, progress));
@@ -142,7 +142,7 @@ int run(const CheckCommandOptions& options) {
   if (options.points.empty()) {
     refuse_given(*options.app, kInputOptionNames, "without --points");
   }
-  Progress progress = make_progress(options.report, options.mesh == "-");
+  ProgressLine progress = make_progress(options.report, options.mesh == "-");
   const Outcome outcome = check_input(options, progress);
   write_text("-", options.json ? json_report(outcome, options) : text_report(outcome, options));
   return outcome.report.fault_count == 0 ? kExitDone : kExitFailed;
@@ -181,4 +181,4 @@ Subcommand add_check(CommandLine& root) {
   return {&app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -9,6 +9,7 @@
 
 #include "src/distributed/ranks.h"
 #include "tools/options/command_line.h"
+#include "tools/options/former_names.h"
 #include "tools/options/suggestion.h"
 #include "tools/process/program_pages.h"
 #include "tools/process/rank_job.h"
@@ -16,7 +17,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kDescription =
@@ -126,7 +127,7 @@ class CommandTree {
 void check_command_line(const std::vector<std::string>& arguments) {
   CommandTree tree(subcommands());
   try {
-    tree.root().parse(arguments);
+    tree.root().parse(with_present_names(arguments));
   } catch (const ArgumentError& error) {
     throw usage_error(tree.root(), error.what());
   }
@@ -151,7 +152,7 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
   }
   Request request{};
   try {
-    request = root.parse(words);
+    request = root.parse(with_present_names(std::move(words)));
   } catch (const ArgumentError& error) {
     throw usage_error(root, error.what());
   }
@@ -174,4 +175,4 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
   return tree.run();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -8,7 +8,7 @@
 #include "tools/options/command_line.h"
 #include "tools/process/exit_code.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// A subcommand in the tree of options, and what to do once the command line is parsed.
 struct Subcommand {
@@ -28,8 +28,8 @@ std::span<const AddSubcommand> subcommands();
 void check_command_line(const std::vector<std::string>& arguments);
 
 /// Parses the command line and does what it says. Returns the exit code; throws UsageError for a
-/// wrong command line and Error for what goes wrong later.
+/// wrong command line and Failure for what goes wrong later.
 int run_command(int argc, const char* const* argv,
                 std::span<const AddSubcommand> table = subcommands());
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -8,7 +8,7 @@
 #include "tools/options/command_options.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -178,4 +178,4 @@ Subcommand add_completion(CommandLine& root) {
   return {&app, [&root, shell] { return run(root, *shell); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -18,7 +18,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -35,8 +35,8 @@ struct ContourCommandOptions : TerrainOptions {
   std::vector<double> levels;
 };
 
-spillway::ContourOptions contour_options(const ContourCommandOptions& options) {
-  spillway::ContourOptions contours;
+ContourOptions contour_options(const ContourCommandOptions& options) {
+  ContourOptions contours;
   contours.levels = options.levels;
   contours.max_edge = max_edge(options);
   contours.foreign_crs = options.input.force_crs;
@@ -53,7 +53,7 @@ spillway::ContourOptions contour_options(const ContourCommandOptions& options) {
 }
 
 void say(const ContourCommandOptions& options, const Report& report, const ContourReport& contours,
-         const RunFacts& facts, Progress& progress) {
+         const RunFacts& facts, ProgressLine& progress) {
   say_what_is_left_out(options, report, progress);
   if (contours.lines == 0) {
     progress.insist(
@@ -68,9 +68,10 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
 
 int run(const ContourCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const spillway::ContourOptions how = contour_options(options);
+  const ContourOptions how = contour_options(options);
   check_statistics_file(options, options.output, "the lines");
-  Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress =
+      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto contours = create_contours(options.output, how, context);
   const TracedReport report = send_terrain(options, *contours, context);
@@ -112,4 +113,4 @@ Subcommand add_contour(CommandLine& root) {
   return {&app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

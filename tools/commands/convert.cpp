@@ -23,7 +23,7 @@
 #include "tools/options/triangulation_options.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -93,7 +93,7 @@ void check_points_output(const ConvertCommandOptions& options) {
     if (!piped) format = &point_format_to_write(output.path, output.format);
   } catch (const InvalidArgument&) {
     if (!is_mesh_output(output)) throw;
-    throw Error(
+    throw Failure(
         fmt::format("{}: these are points, and {} would be a mesh: use spillway triangulate",
                     options.inputs.front(), output.name()));
   }
@@ -112,7 +112,7 @@ std::string axes_text(const std::array<double, 3>& values) {
 }
 
 /// Says what is not as it was in the inputs.
-void tell_changes(const PointConversion& done, Progress& progress) {
+void tell_changes(const PointConversion& done, ProgressLine& progress) {
   if (done.farthest > 0) {
     progress.say(fmt::format(
         "coordinates rounded to multiples of {} from {} on, which moved them by {:.3g} at most; "
@@ -124,7 +124,8 @@ void tell_changes(const PointConversion& done, Progress& progress) {
   if (!done.points.all_kept()) progress.say(describe(done.points));
 }
 
-int run_points(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
+int run_points(const ConvertCommandOptions& options, const Context& context,
+               ProgressLine& progress) {
   check_points_output(options);
   const PointOutput& output = options.output;
   PointFileOptions written{.format = format_name_of(output),
@@ -177,7 +178,8 @@ std::string files_of(const std::string& output, const MeshFormat& format) {
   return format.file_set != nullptr ? format.file_set->names(output) : output;
 }
 
-void run_mesh(const ConvertCommandOptions& options, const Context& context, Progress& progress) {
+void run_mesh(const ConvertCommandOptions& options, const Context& context,
+              ProgressLine& progress) {
   const std::string& input = options.inputs.front();
   if (options.inputs.size() > 1) {
     throw UsageError("several meshes do not become one: convert them one by one");
@@ -222,7 +224,7 @@ int run(const ConvertCommandOptions& options) {
     refuse_given(*options.app, {"--cell-points", "--dim"}, "without --sorted");
   }
   const bool reads_pipe = std::ranges::find(options.inputs, "-") != options.inputs.end();
-  Progress progress = make_progress(options.report, reads_pipe);
+  ProgressLine progress = make_progress(options.report, reads_pipe);
   const Context context(context_options(options.memory, 0, progress));
   if (kind_of(options, context) == InputKind::kPoints) {
     return run_points(options, context, progress);
@@ -272,4 +274,4 @@ Subcommand add_convert(CommandLine& root) {
   return {&app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

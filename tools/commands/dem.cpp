@@ -15,7 +15,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -46,7 +46,7 @@ std::string why_empty(const DemCommandOptions& options, const DemReport& raster)
 }
 
 void say(const DemCommandOptions& options, const Report& report, const DemReport& raster,
-         const RunFacts& facts, Progress& progress) {
+         const RunFacts& facts, ProgressLine& progress) {
   say_what_is_left_out(options, report, progress);
   if (raster.spilled_bytes > 0) {
     progress.detail(
@@ -75,9 +75,10 @@ Json raster_json(const DemReport& raster) {
 
 int run(const DemCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const spillway::DemOptions how = dem_options(options);
+  const DemOptions how = dem_options(options);
   check_statistics_file(options, options.output, "the raster");
-  Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress =
+      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto dem = create_dem(options.output, how, context);
   const TracedReport report = send_terrain(options, *dem, context);
@@ -98,4 +99,4 @@ Subcommand add_dem(CommandLine& root) {
   return {&app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -11,7 +11,7 @@
 
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 double parse_resolution(const std::string& text) {
@@ -69,7 +69,7 @@ void check_products(const CommandLine& app, const std::vector<DemProduct>& produ
     refuse_given(app, {"--z-factor"}, "without slope, aspect or hillshade among the products");
   }
   if (products == std::vector{DemProduct::kDensity}) {
-    refuse_given(app, {"--duplicates", "--max-edge"}, "on density, which counts vertices");
+    refuse_given(app, {"--heights", "--max-edge"}, "on density, which counts vertices");
   }
 }
 
@@ -150,8 +150,8 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   add_report_options(app, options.report);
 }
 
-spillway::DemOptions dem_options(const DemCommandOptions& options) {
-  spillway::DemOptions dem;
+DemOptions dem_options(const DemCommandOptions& options) {
+  DemOptions dem;
   if (!options.bounds.empty()) {
     refuse_given(*options.app, {"--force-size"}, "with --bounds, which tells what to cover");
   }
@@ -181,4 +181,4 @@ spillway::DemOptions dem_options(const DemCommandOptions& options) {
   return dem;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

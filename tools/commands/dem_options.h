@@ -6,7 +6,7 @@
 
 #include "tools/commands/terrain_input.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// The command line of `dem`; an empty text is an option that was not given.
 struct DemCommandOptions : TerrainOptions {
@@ -28,6 +28,6 @@ struct DemCommandOptions : TerrainOptions {
 void add_dem_options(CommandLine& app, DemCommandOptions& options);
 
 /// What is to be made. Throws UsageError for options that are wrong or contradict each other.
-spillway::DemOptions dem_options(const DemCommandOptions& options);
+DemOptions dem_options(const DemCommandOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -17,7 +17,7 @@
 #include "tools/options/point_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -126,7 +126,7 @@ int run(const GenerateCommandOptions& options) {
   check_las_version(options.output,
                     point_format_to_write(options.output.path, format).has_versions);
   // How messages are written is settled before there is anything that an interruption would remove.
-  Progress progress = make_progress(options.report);
+  ProgressLine progress = make_progress(options.report);
   const Context context(context_options({}, 0, progress));
   const std::string done =
       is_grid ? write_grid(options, format, context) : write_file(options, format, context);
@@ -173,4 +173,4 @@ Subcommand add_generate(CommandLine& root) {
   return {&app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -24,7 +24,7 @@
 #include "tools/report/statistics.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -232,7 +232,7 @@ void tell(const std::string& path, const InfoOptions& options, const Context& co
 bool may_be_points(const std::string& path, const InfoOptions& options, const Context& context) {
   try {
     return kind_of(path, options, context) == InputKind::kPoints;
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return true;
   }
 }
@@ -249,7 +249,7 @@ void check_point_options(const std::vector<std::string>& paths, const InfoOption
 }
 
 int run(const InfoOptions& options) {
-  Progress progress = make_progress(
+  ProgressLine progress = make_progress(
       options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
   const Context context(context_options(options.memory, 0, progress));
   const std::vector<std::string> paths = expand_inputs(options.files, context);
@@ -264,7 +264,7 @@ int run(const InfoOptions& options) {
       throw;
     } catch (const ClosedPipe&) {
       throw;
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       // What else there is to tell is not held up by one file.
       progress.give_up();
       if (paths.size() == 1) throw;
@@ -294,4 +294,4 @@ Subcommand add_info(CommandLine& root) {
   return {&app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 #include "tools/commands/command.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Text as roff takes it: hyphens that can be copied, backslashes and leading dots made harmless.
@@ -118,4 +118,4 @@ Subcommand add_manual(CommandLine& root) {
   return {&app, [&root] { return run(root); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -19,7 +19,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
@@ -88,7 +88,7 @@ void check_outputs(const RenderCommandOptions& options) {
 }
 
 void say(const RenderCommandOptions& options, const Report& report, const PictureReport& picture,
-         const RunFacts& facts, Progress& progress) {
+         const RunFacts& facts, ProgressLine& progress) {
   say_what_is_left_out(options, report, progress);
   if (picture.edges_too_small) {
     progress.say(fmt::format("most triangles are too small for their edges to be seen: {}",
@@ -104,7 +104,8 @@ int run(const RenderCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const PictureOptions how = picture_options(options);
   check_outputs(options);
-  Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress =
+      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto picture = create_picture(options.output, how, context);
   const TracedReport report = send_terrain(options, *picture, context);
@@ -156,4 +157,4 @@ Subcommand add_render(CommandLine& root) {
   return {&app, [options] { return run(*options); }};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -14,7 +14,7 @@
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Throws UsageError if a file of `option` would go to the same place as `what`.
@@ -72,4 +72,4 @@ void write_statistics(const TriangulationOptions& options, const TracedReport& r
   write_text(options.stats_path, json_text(json, 2) + "\n");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

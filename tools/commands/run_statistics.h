@@ -13,10 +13,10 @@
 #include "tools/report/statistics.h"
 #include "tools/simulate/run_recorder.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Throws UsageError if --stats or --tasks would go where the other or the run's output goes, which
-/// messages call `product`, or if --tasks is given to one of several ranks, and Error if a file of
+/// messages call `product`, or if --tasks is given to one of several ranks, and Failure if a file of
 /// theirs cannot be made.
 void check_statistics_file(const TriangulationOptions& options, const std::string& output,
                            std::string_view product);
@@ -35,4 +35,4 @@ RunFacts facts_of_run(const TriangulationOptions& options, const std::string& ou
 void write_statistics(const TriangulationOptions& options, const TracedReport& report,
                       const RunFacts& facts, const Json& product = Json::object());
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,9 +4,9 @@
 
 #include "tools/process/exit_code.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
-int tell_skipped(const std::vector<SkippedFile>& files, Progress& progress) {
+int tell_skipped(const std::vector<SkippedFile>& files, ProgressLine& progress) {
   if (files.empty()) return kExitDone;
   for (const SkippedFile& file : files) progress.insist("error: " + file.message);
   progress.insist(files.size() == 1
@@ -17,4 +17,4 @@ int tell_skipped(const std::vector<SkippedFile>& files, Progress& progress) {
   return kExitFailed;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

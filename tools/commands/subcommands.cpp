@@ -15,7 +15,7 @@
   DO(completion)                 \
   DO(manual)
 
-namespace spillway::detail {
+namespace spillway::command {
 
 #define SPILLWAY_DECLARE(NAME) Subcommand add_##NAME(CommandLine& root);
 SPILLWAY_SUBCOMMANDS(SPILLWAY_DECLARE)
@@ -26,4 +26,4 @@ std::span<const AddSubcommand> subcommands() {
   return kAll;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

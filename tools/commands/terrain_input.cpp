@@ -15,7 +15,7 @@
 #include "tools/process/rank_job.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 void refuse_options_of_points(const TerrainOptions& options) {
@@ -34,7 +34,7 @@ void refuse_options_of_points(const TerrainOptions& options) {
 void refuse_mesh(const TerrainOptions& options, const Context& context) {
   const std::string& path = options.inputs.front();
   if (!is_first_rank() || path == "-" || !std::filesystem::is_regular_file(path)) return;
-  if (!options.mesh_format.empty() || spillway::kind_of_input(path, context) == InputKind::kMesh) {
+  if (!options.mesh_format.empty() || kind_of_input(path, context) == InputKind::kMesh) {
     throw UsageError(path + " is a mesh, which one process reads: start it without mpirun");
   }
 }
@@ -55,7 +55,7 @@ bool is_mesh(const TerrainOptions& options, const Context& context) {
     return false;
   }
   if (several || (path != "-" && !std::filesystem::exists(path))) return false;
-  return !options.mesh_format.empty() || spillway::kind_of_input(path, context) == InputKind::kMesh;
+  return !options.mesh_format.empty() || kind_of_input(path, context) == InputKind::kMesh;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void add_terrain_options(CommandLine& app, TerrainOptions& options) {
              "Format of a mesh, where neither content nor name tell");
 }
 
-Context terrain_context(const TerrainOptions& options, Progress& progress) {
+Context terrain_context(const TerrainOptions& options, ProgressLine& progress) {
   reuse_freed_memory();
   ContextOptions limits = context_options(options.memory, thread_count(options), progress);
   limits.executor = rank_executor();
@@ -89,11 +89,12 @@ TracedReport send_terrain(const TerrainOptions& options, MeshSink& sink, const C
                                triangulate_options(options, options.dimension), context);
 }
 
-void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress) {
+void say_what_is_left_out(const TerrainOptions& options, const Report& report,
+                          ProgressLine& progress) {
   if (!report.points.all_kept()) progress.say(describe(report.points));
   if (report.left_out == 0) return;
   progress.say(fmt::format("{} {} with an edge longer than {} left out", report.left_out,
                            simplices_of(report.dimension), *max_edge(options)));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -13,7 +13,7 @@
 #include "tools/report/progress.h"
 #include "tools/report/statistics.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// The command line of such a subcommand.
 struct TerrainOptions : TriangulationOptions {
@@ -28,13 +28,14 @@ struct TerrainOptions : TriangulationOptions {
 void add_terrain_options(CommandLine& app, TerrainOptions& options);
 
 /// What the run may take, and who does it.
-Context terrain_context(const TerrainOptions& options, Progress& progress);
+Context terrain_context(const TerrainOptions& options, ProgressLine& progress);
 
 /// Sends the triangles of the input to `sink`. Throws UsageError for options that the input at hand
 /// does not have.
 TracedReport send_terrain(const TerrainOptions& options, MeshSink& sink, const Context& context);
 
 /// Says what was dropped of the points, and of the simplices.
-void say_what_is_left_out(const TerrainOptions& options, const Report& report, Progress& progress);
+void say_what_is_left_out(const TerrainOptions& options, const Report& report,
+                          ProgressLine& progress);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -32,20 +32,20 @@
 #include "tools/simulate/core_simulation.h"
 #include "tools/simulate/run_recorder.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr const char* kExamples =
     "Examples:\n"
     "  spillway triangulate survey.las -o tin.ply\n"
-    "  spillway triangulate north.las south.las -o tin.vtu --duplicates lowest\n"
+    "  spillway triangulate north.las south.las -o tin.vtu --heights lowest\n"
     "  zcat points.txt.gz | spillway triangulate - -o - --output-format obj > tin.obj\n"
     "  spillway triangulate scan.npy --dim 3 -o tetrahedra.vtu --stats run.json\n"
     "  spillway triangulate survey.las -o tin.ply --simulate-cores 1,2,4,...,1024\n"
-    "  spillway triangulate survey.las -o tin.spm --memory 512M --tmpdir /scratch\n"
+    "  spillway triangulate survey.las -o tin.spm --memory 512M --scratch-folder /scratch\n"
     "  spillway triangulate 'tiles/*.la[sz]' -o ground.ply --keep-class 2 --thin 0.5:lowest\n"
     "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
-    "  mpirun -n 8 spillway triangulate survey.las -o tin.spm --tmpdir /local\n"
+    "  mpirun -n 8 spillway triangulate survey.las -o tin.spm --scratch-folder /local\n"
     "The output gets its name when it is complete, so it may replace an input.";
 
 struct TriangulateCommandOptions : TriangulationOptions {
@@ -102,7 +102,7 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
 
 /// Says what the third column of npy is taken for, which has numbers without names.
 void say_what_heights_are(const TriangulateCommandOptions& options, const PointsHeader& points,
-                          Progress& progress) {
+                          ProgressLine& progress) {
   if (options.app->is_given("--dim") || points.coordinates == 2 || !is_first_rank()) return;
   const auto is_npy = [](const std::string& input) {
     return point_format_of_path(input) == &kNpyPoints;
@@ -116,7 +116,7 @@ void say_what_heights_are(const TriangulateCommandOptions& options, const Points
 }
 
 void say(const TriangulateCommandOptions& options, const Report& report, const RunFacts& facts,
-         Progress& progress) {
+         ProgressLine& progress) {
   if (!report.points.all_kept()) progress.say(describe(report.points));
   if (report.left_out > 0) {
     progress.say(
@@ -215,7 +215,8 @@ int run(const TriangulateCommandOptions& options) {
   check_options(options);
   const auto start = std::chrono::steady_clock::now();
   std::optional<RunRecorder> recorder(std::in_place);
-  Progress progress = make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress =
+      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   ContextOptions limits =
       context_options(options.memory, options.simulates() ? 1 : thread_count(options), progress);
   limits.executor = rank_executor();
@@ -254,4 +255,4 @@ Subcommand add_triangulate(CommandLine& root) {
   return {&app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -8,7 +8,7 @@
 
 #include "tools/options/help_layout.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Whether an option, or a positional, takes any number of arguments.
@@ -360,4 +360,4 @@ std::vector<GivenOption> CommandLine::given_options() const {
 
 std::string CommandLine::given_text() const { return impl_->app->config_to_str(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -10,11 +10,13 @@
 #include <string_view>
 #include <vector>
 
+#include "src/rooms.h"
+
 namespace CLI {
 class Option;
 }
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Headings in help of options that are needed less often than those of a subcommand itself. They
 /// come last, in this order.
@@ -161,4 +163,4 @@ class CommandLine {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

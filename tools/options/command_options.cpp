@@ -16,7 +16,7 @@
 #include "tools/process/rank_job.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 std::vector<double> parse_numbers(const std::string& text) {
@@ -44,7 +44,7 @@ void add_memory_options(CommandLine& app, MemoryOptions& options) {
       parse_memory_size)
       .value_name("SIZE")
       .group(kResourceGroup);
-  app.add_option("--tmpdir", options.scratch_parent,
+  app.add_option("--scratch-folder", options.scratch_parent,
                  "Folder for what does not fit into memory [$TMPDIR, else /tmp]")
       .value_name("DIR")
       .group(kResourceGroup);
@@ -60,18 +60,19 @@ std::uint64_t memory_limit(const MemoryOptions& options) {
   return default_memory_limit(static_cast<unsigned>(distributed::launch().ranks_here));
 }
 
-ContextOptions context_options(const MemoryOptions& options, unsigned threads, Progress& progress) {
+ContextOptions context_options(const MemoryOptions& options, unsigned threads,
+                               ProgressLine& progress) {
   // What was asked for by name is tried at once, not when hours of work are to be written there.
   const std::string& parent = options.scratch_parent;
   if (!parent.empty() && ::access((parent + "/.").c_str(), W_OK | X_OK) != 0) {
-    throw Error(fmt::format("--tmpdir: cannot write to {}: {}", parent,
-                            std::generic_category().message(errno)));
+    throw Failure(fmt::format("--scratch-folder: cannot write to {}: {}", parent,
+                              std::generic_category().message(errno)));
   }
   return {.memory = fmt::format("{}", memory_limit(options)),
           .threads = threads,
           .scratch_folder = parent,
           .scratch_limit = options.scratch_cap,
-          .progress = [&progress](const spillway::Progress& state) { progress.tell(state); },
+          .progress = [&progress](const Progress& state) { progress.tell(state); },
           .warning = [&progress](std::string_view text) { progress.say(text); },
           .detail = [&progress](std::string_view text) { progress.detail(text); }};
 }
@@ -137,7 +138,7 @@ void add_report_options(CommandLine& app, ReportOptions& options) {
   app.add_flag("-v,--verbose", options.verbose, "Say more").group(kReportGroup).excludes(quiet);
 }
 
-Progress make_progress(const ReportOptions& options, bool reads_pipe) {
+ProgressLine make_progress(const ReportOptions& options, bool reads_pipe) {
   if (!is_first_rank()) return {ProgressStyle::kNone, true, false};
   ProgressStyle style = ProgressStyle::kPlain;
   if (options.quiet || options.progress == "none") {
@@ -243,4 +244,4 @@ std::uint64_t parse_point_count(std::string_view text) {
   return static_cast<std::uint64_t>(value);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -17,7 +17,7 @@
 #include "tools/options/command_line.h"
 #include "tools/report/progress.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// --progress, -q, -v.
 struct ReportOptions {
@@ -31,9 +31,9 @@ void add_report_options(CommandLine& app, ReportOptions& options);
 /// lines; of several ranks the first one reports. Where the input is a pipe, there is no line in
 /// the first phase: all commands of the chain share the terminal, and that of the first one stays
 /// readable.
-Progress make_progress(const ReportOptions& options, bool reads_pipe = false);
+ProgressLine make_progress(const ReportOptions& options, bool reads_pipe = false);
 
-/// --memory, --tmpdir, --max-tmp.
+/// --memory, --scratch-folder, --max-tmp.
 struct MemoryOptions {
   std::string limit;
   std::string scratch_parent;
@@ -45,9 +45,10 @@ void add_memory_options(CommandLine& app, MemoryOptions& options);
 std::uint64_t memory_limit(const MemoryOptions& options);
 
 /// What a run may take and whom it tells, for the library: phases, warnings and details go to
-/// `progress`, which must outlive it. Throws UsageError, and Error if the folder of --tmpdir cannot
+/// `progress`, which must outlive it. Throws UsageError, and Failure if the folder of --scratch-folder cannot
 /// be written to.
-ContextOptions context_options(const MemoryOptions& options, unsigned threads, Progress& progress);
+ContextOptions context_options(const MemoryOptions& options, unsigned threads,
+                               ProgressLine& progress);
 
 /// Those of these options that were given to the subcommand. What it does not have is never given.
 std::vector<std::string_view> given_options(const CommandLine& app,
@@ -100,4 +101,4 @@ Option add_number_list(CommandLine& app, const std::string& name, std::vector<do
 /// anything else, negative and fractional numbers included.
 std::uint64_t parse_point_count(std::string_view text);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

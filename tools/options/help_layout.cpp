@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr std::size_t kUsualWidth = 100;
@@ -98,4 +98,4 @@ std::string help_entry(std::string_view name, std::string_view meaning, std::siz
   return text + fmt::format("{}\n", fmt::join(lines_of(meaning, width - column), "\n" + indent));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// Columns that help may take: what COLUMNS says, else those of the terminal that standard output
 /// is, else 100; at least 40, and at most 120, as longer lines are hard to read.
@@ -19,4 +21,4 @@ std::string wrapped(std::string_view text, std::size_t width);
 /// takes. A list of words in the name may be broken after each `|`.
 std::string help_entry(std::string_view name, std::string_view meaning, std::size_t width);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -19,7 +19,7 @@
 #include "tools/options/command_options.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -251,7 +251,7 @@ std::string parse_crs(std::string_view text) {
 void parse_condition(const std::string& text) {
   try {
     static_cast<void>(names_in_condition(text));
-  } catch (const spillway::Error& error) {
+  } catch (const Error& error) {
     throw UsageError(error.what());
   }
 }
@@ -286,4 +286,4 @@ MeshOptions mesh_options(const InputOptions& options, const std::string& format)
   return mesh;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -12,7 +12,7 @@
 
 #include "tools/options/command_line.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// As on the command line; an empty text is an option that was not given.
 struct InputOptions {
@@ -79,4 +79,4 @@ Extent parse_bounds(std::string_view text);
 /// Reads the value of --thin: "CELL" or "CELL:CHOICE".
 Thin parse_thinning(std::string_view text);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

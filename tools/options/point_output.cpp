@@ -7,7 +7,7 @@
 #include "tools/options/command_options.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 void add_las_version(CommandLine& app, PointOutput& output) {
   add_choice(app, "--las-version", output.las_version, {"1.2", "1.4"},
@@ -32,4 +32,4 @@ std::string format_name_of(const PointOutput& output) {
   return output.format.empty() ? std::string(own_point_stream().name) : output.format;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -5,7 +5,7 @@
 
 #include "tools/options/command_line.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// -o, --output-format and --las-version.
 struct PointOutput {
@@ -27,4 +27,4 @@ void check_las_version(const PointOutput& output, bool is_las);
 /// if bytes would go to a terminal.
 std::string format_name_of(const PointOutput& output);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

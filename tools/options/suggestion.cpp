@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// How many slips make `b` of `a`: letters that are inserted, left out or replaced, neighbours that
@@ -59,4 +59,4 @@ std::string suggestion(std::string_view word, std::span<const std::string> names
   return found.empty() ? "" : fmt::format(" (did you mean {}?)", found);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -10,7 +10,7 @@
 #include "src/parallel/parallel.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 const std::vector<std::string>& heights_names() {
@@ -35,7 +35,7 @@ Division division_by_name(const std::string& name) {
 
 void add_triangulation_options(CommandLine& app, TriangulationOptions& options) {
   options.app = &app;
-  add_choice(app, "--duplicates", options.duplicates, heights_names(),
+  add_choice(app, "--heights", options.heights, heights_names(),
              "Which z a vertex of several points of equal x, y gets");
   take_positive_number(app.add_option("--max-edge", options.max_edge,
                                       "Leave out simplices with an edge longer than L"))
@@ -59,7 +59,7 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
       .value_name("S")
       .group(kResourceGroup)
       .show_default();
-  app.add_flag("--distrust-headers", options.distrust_headers,
+  app.add_flag("--no-trust-headers", options.distrust_headers,
                "Read all points before triangulating, as headers may lie about their extent")
       .group(kTuningGroup);
   app.add_option("--stats", options.stats_path, "Write figures of the run")
@@ -69,14 +69,14 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
                  "Write the run's tasks, a line of JSON for each tile and merge of tiles")
       .value_name("FILE")
       .group(kReportGroup);
-  take_whole_number(app.add_option("--base-case", options.base_case_size,
+  take_whole_number(app.add_option("--leaf-points", options.leaf_points,
                                    "Most points of one sequential base case (a leaf); 0: chosen by "
                                    "number and memory"))
       .value_name("N")
       .group(kTuningGroup)
       .show_default();
   take_whole_number(
-      app.add_option("--tile", options.tile_capacity,
+      app.add_option("--tile-points", options.tile_points,
                      "Most points of a tile that is loaded at a time; 0: chosen by the memory"))
       .value_name("N")
       .group(kTuningGroup)
@@ -97,13 +97,13 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
 
 void check_duplicates(const TriangulationOptions& options, int dimension) {
   if (dimension != 3) return;
-  refuse_given(*options.app, {"--duplicates"},
+  refuse_given(*options.app, {"--heights"},
                "with --dim 3, as it chooses a height for points of equal x and y");
 }
 
 void check_heights(const TriangulationOptions& options, const PointsHeader& points) {
   if (points.coordinates == 3) return;
-  refuse_given(*options.app, {"--duplicates"}, "on points without z");
+  refuse_given(*options.app, {"--heights"}, "on points without z");
 }
 
 unsigned thread_count(const TriangulationOptions& options) {
@@ -127,10 +127,10 @@ TriangulateOptions triangulate_options(const TriangulationOptions& options, int 
   }
   TriangulateOptions how;
   how.dimension = dimension;
-  how.heights = heights_by_name(options.duplicates);
+  how.heights = heights_by_name(options.heights);
   how.max_edge = max_edge(options);
-  how.tile_points = options.tile_capacity;
-  how.leaf_points = options.base_case_size;
+  how.tile_points = options.tile_points;
+  how.leaf_points = options.leaf_points;
   how.division = division_by_name(options.division);
   how.children = options.children;
   if (options.kernel == "cgal") how.kernel = Kernel::kCgal;
@@ -147,4 +147,4 @@ void reuse_freed_memory(std::size_t kept) {
   mallopt(M_ARENA_MAX, 1);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -14,22 +14,22 @@
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// As on the command line.
 struct TriangulationOptions {
   const CommandLine* app = nullptr;  ///< the subcommand
   std::vector<std::string> inputs;
   InputOptions input;
-  std::string duplicates = "first";
+  std::string heights = "first";
   std::string max_edge;
   unsigned threads = 0;
   MemoryOptions memory;
   bool distrust_headers = false;
   std::string stats_path;
   std::string tasks_path;
-  std::size_t base_case_size = 0;
-  std::size_t tile_capacity = 0;
+  std::size_t leaf_points = 0;
+  std::size_t tile_points = 0;
   std::string division = "least-border";
   unsigned children = 2;
   std::string kernel = "spillway";
@@ -38,21 +38,21 @@ struct TriangulationOptions {
   ReportOptions report;
 };
 
-/// All but IN and those of ReportOptions: --duplicates, --max-edge, the input's, --threads, the
-/// memory's, --distrust-headers, --stats, --tasks, and how the work is divided.
+/// All but IN and those of ReportOptions: --heights, --max-edge, the input's, --threads, the
+/// memory's, --no-trust-headers, --stats, --tasks, and how the work is divided.
 void add_triangulation_options(CommandLine& app, TriangulationOptions& options);
 
 /// Of these the names of those that have no effect where a mesh is read, beside those of
 /// add_input_options().
 inline constexpr std::array<std::string_view, 10> kTriangulationOptionNames = {
-    "--duplicates", "--distrust-headers", "--tasks",  "--base-case", "--tile",
-    "--division",   "--children",         "--kernel", "--resume",    "--checkpoint-every"};
+    "--heights",  "--no-trust-headers", "--tasks",  "--leaf-points", "--tile-points",
+    "--division", "--children",         "--kernel", "--resume",      "--checkpoint-every"};
 
-/// Throws UsageError if --duplicates is given, though points of equal x and y are no duplicates:
+/// Throws UsageError if --heights is given, though points of equal x and y are no duplicates:
 /// in three dimensions.
 void check_duplicates(const TriangulationOptions& options, int dimension);
 
-/// Throws UsageError if --duplicates is given for points without heights.
+/// Throws UsageError if --heights is given for points without heights.
 void check_heights(const TriangulationOptions& options, const PointsHeader& points);
 
 /// The number of threads that --threads asks for.
@@ -69,4 +69,4 @@ TriangulateOptions triangulate_options(const TriangulationOptions& options, int 
 /// pieces of up to a quarter of it, in one store for all threads.
 void reuse_freed_memory(std::size_t kept = std::size_t{16} << 20);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -17,7 +17,7 @@
 #include "tools/process/rank_job.h"
 #include "tools/report/standard_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Ends the process with exit code 1 where there is not even memory for an exception, which would
@@ -78,15 +78,15 @@ int report(const std::exception_ptr& failure) {
     return end_quietly(kExitClosedPipe);
   } catch (const InvalidArgument& error) {
     return report_error(error, kExitUsage);
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return report_error(error, kExitFailed);
   } catch (const std::bad_alloc&) {
-    return report_error(Error(no_memory()), kExitFailed);
+    return report_error(Failure(no_memory()), kExitFailed);
   } catch (const std::system_error& error) {
     const bool thread = error.code() == std::errc::resource_unavailable_try_again;
-    return report_error(Error(thread ? no_thread() : error.what()), kExitFailed);
+    return report_error(Failure(thread ? no_thread() : error.what()), kExitFailed);
   } catch (const std::exception& error) {
-    return report_error(Error(is_of_a_thread(error.what()) ? no_thread() : error.what()),
+    return report_error(Failure(is_of_a_thread(error.what()) ? no_thread() : error.what()),
                         kExitFailed);
   }
 }
@@ -108,10 +108,11 @@ void handle_uncaught_exceptions() {
   std::set_terminate([] {
     const std::exception_ptr thrown = std::current_exception();
     const int exit_code = report_failure(
-        thrown ? thrown : std::make_exception_ptr(Error("a fault of the program itself ends it")));
+        thrown ? thrown
+               : std::make_exception_ptr(Failure("a fault of the program itself ends it")));
     remove_unfinished_files();
     _exit(exit_code);
   });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -3,7 +3,9 @@
 
 #include <exception>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// Reports what was thrown and ends the ranks, if there are any (rank_job.h). Returns the exit code
 /// for main; in a second thread that fails, not at all: one line is enough. A thread that cannot be
@@ -15,4 +17,4 @@ int report_failure(const std::exception_ptr& failure) noexcept;
 /// report_failure() would, with nothing left behind.
 void handle_uncaught_exceptions();
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -18,7 +18,7 @@
 #include "src/distributed/ranks.h"
 #include "tools/report/standard_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// How long an interrupted rank stays when it is done. mpirun kills all a second after it has told
@@ -103,4 +103,4 @@ InterruptAdvice::~InterruptAdvice() {
   first_action().advice.clear();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -3,7 +3,9 @@
 #include <functional>
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// Makes SIGINT, SIGTERM and SIGHUP wait for handle_interrupts(), in this thread and in all that it
 /// starts. To be called before anything else, as until then they end the process at once.
@@ -38,4 +40,4 @@ class InterruptAdvice {
   InterruptAdvice& operator=(const InterruptAdvice&) = delete;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

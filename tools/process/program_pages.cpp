@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// A stretch of memory, as a line of the system's list begins with it.
@@ -59,4 +59,4 @@ void let_go_of_program_pages() {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -19,7 +19,7 @@
 #include "tools/report/standard_error.h"
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 using distributed::launch;
@@ -38,8 +38,8 @@ constexpr int kMostTurns = 50;
 
 /// Options that may differ from rank to rank: what they have on their machines.
 bool is_of_the_machine(std::string_view line) {
-  constexpr std::array<std::string_view, 8> kOwn = {"memory",   "tmpdir", "max-tmp", "threads",
-                                                    "progress", "quiet",  "verbose", "stats"};
+  constexpr std::array<std::string_view, 8> kOwn = {
+      "memory", "scratch-folder", "max-tmp", "threads", "progress", "quiet", "verbose", "stats"};
   const std::string_view name = line.substr(0, line.find('='));
   return std::find(kOwn.begin(), kOwn.end(), name) != kOwn.end();
 }
@@ -69,7 +69,7 @@ void check_same_options(const std::string& options) {
     if (all[rank] == all[0]) continue;
     if (!is_first_rank()) ranks.barrier();  // never left: rank 0 ends the job
     throw UsageError(fmt::format(
-        "rank {} was given other options than rank 0: only --tmpdir, --max-tmp, --memory, "
+        "rank {} was given other options than rank 0: only --scratch-folder, --max-tmp, --memory, "
         "--threads and those of reports may differ",
         rank));
   }
@@ -79,7 +79,7 @@ void leave_ranks() { joined().reset(); }
 
 bool is_first_rank() { return (joined() ? joined()->rank() : launch().rank) == 0; }
 
-int report_error(const Error& error, int exit_code) {
+int report_error(const Failure& error, int exit_code) {
   stop_if_run_is_ending();
   const std::string rank =
       joined() && joined()->size() > 1 ? fmt::format("rank {}: ", joined()->rank()) : "";
@@ -89,7 +89,7 @@ int report_error(const Error& error, int exit_code) {
   std::this_thread::sleep_for(kTurn * std::min(turn, kMostTurns));
   if (const auto* const list = dynamic_cast<const ErrorList*>(&error)) {
     write_error(rank + list->heading() + ":");
-    for (const Error& fault : list->faults()) {
+    for (const Failure& fault : list->faults()) {
       write_to_standard_error("  " + printable(advised_message(fault)) + "\n");
     }
   } else {
@@ -104,4 +104,4 @@ int end_quietly(int exit_code) {
   distributed::abort_job(exit_code);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -9,7 +9,7 @@
 #include "src/distributed/ranks.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// The ranks that this process works with, joined at the first call; null if it was started alone.
 const distributed::Ranks* join_ranks();
@@ -31,9 +31,9 @@ bool is_first_rank();
 /// Reports an error on standard error, once for the job if all ranks have it, and ends all ranks.
 /// Says nothing, and stops this thread, where a signal is ending the run. Returns only if this
 /// process was started alone, or if the ranks have not been joined yet; the exit code is for main.
-int report_error(const Error& error, int exit_code);
+int report_error(const Failure& error, int exit_code);
 
 /// Ends all ranks without a message, where report_error() would end them.
 int end_quietly(int exit_code);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

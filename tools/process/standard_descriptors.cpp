@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <initializer_list>
 
-namespace spillway::detail {
+namespace spillway::command {
 
 void open_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -21,4 +21,4 @@ void open_standard_descriptors() {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// Puts something in place of those of standard input, output and error that are closed, so that no
 /// file which is opened later gets their numbers. Reading such an input or writing such an output
@@ -8,4 +10,4 @@ namespace spillway::detail {
 /// exit code 1 where that cannot be done.
 void open_standard_descriptors();
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,7 +4,7 @@
 
 #include <cerrno>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 std::string mebibytes(std::uint64_t bytes) { return fmt::format("{}M", bytes >> 20); }
@@ -25,11 +25,12 @@ std::string folder_advice(int system_error) {
   switch (system_error) {
     case ENOSPC:
     case EDQUOT:
-      return "; free some space or choose another folder with --tmpdir";
+      return "; free some space or choose another folder with --scratch-folder";
     case EFBIG:
-      return "; raise the file size limit (ulimit -f) or choose another folder with --tmpdir";
+      return "; raise the file size limit (ulimit -f) or choose another folder with "
+             "--scratch-folder";
     default:
-      return "; choose another folder with --tmpdir";
+      return "; choose another folder with --scratch-folder";
   }
 }
 
@@ -58,7 +59,7 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kLas14:
       return "; choose --las-version 1.4";
     case Remedy::kDistrustHeaders:
-      return "; with --distrust-headers all points are read first, and may lie anywhere";
+      return "; with --no-trust-headers all points are read first, and may lie anywhere";
     case Remedy::kColumns:
       return "; say which columns are x, y and z, as --columns PNEZD (point, northing, easting, "
              "height, description) or --columns 3,2,4";
@@ -91,8 +92,6 @@ std::string advice(const ErrorFacts& facts) {
 
 }  // namespace
 
-std::string advised_message(const spillway::Error& error) {
-  return error.what() + advice(error.facts());
-}
+std::string advised_message(const Error& error) { return error.what() + advice(error.facts()); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -5,9 +5,11 @@
 
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// The error's message, followed by the options that would help.
-std::string advised_message(const spillway::Error& error);
+std::string advised_message(const Error& error);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -7,13 +7,13 @@
 #include "tools/report/task_file.h"
 #include "tools/simulate/run_recorder.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What the command takes of a run: for --tasks, for --simulate-cores, and for --stats.
 class CommandTrace final : public RunTrace {
  public:
   /// `tasks_path` is that of --tasks, or empty; the recorder, if there is one, must outlive it.
-  /// Throws Error if the file cannot be made.
+  /// Throws Failure if the file cannot be made.
   CommandTrace(const std::string& tasks_path, std::optional<RunRecorder>* recorder)
       : recorder_(recorder) {
     if (!tasks_path.empty()) tasks_.emplace(tasks_path);
@@ -48,4 +48,4 @@ class CommandTrace final : public RunTrace {
   RunSums sums_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -2,7 +2,7 @@
 
 #include "tools/report/printable_text.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 std::string json_text(const Json& json, int indent) {
   const std::string text = json_to_text(json, indent);
@@ -10,4 +10,4 @@ std::string json_text(const Json& json, int indent) {
   return indent < 0 ? printable(text) : text;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,9 +4,9 @@
 
 #include "formats/bytes/json.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// As json_to_text(), but a line has no control characters.
 std::string json_text(const Json& json, int indent = -1);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <iterator>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// A character of UTF-8 and how many bytes it has; 0 bytes for what is none.
@@ -71,4 +71,4 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

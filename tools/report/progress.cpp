@@ -7,7 +7,7 @@
 #include "tools/report/printable_text.h"
 #include "tools/report/standard_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 MessageStyle message_style(ProgressStyle style) {
@@ -36,25 +36,25 @@ std::chrono::milliseconds period(ProgressStyle style) {
 
 }  // namespace
 
-Progress::Progress(ProgressStyle style, bool quiet, bool verbose)
+ProgressLine::ProgressLine(ProgressStyle style, bool quiet, bool verbose)
     : style_(style), quiet_(quiet), verbose_(verbose) {
   set_message_style(message_style(style));
 }
 
-Progress::~Progress() { give_up(); }
+ProgressLine::~ProgressLine() { give_up(); }
 
-void Progress::Phase::update(std::uint64_t done, std::optional<double> fraction) {
+void ProgressLine::Phase::update(std::uint64_t done, std::optional<double> fraction) {
   state.done = std::max(state.done, done);
   state.fraction = fraction ? std::max(state.fraction, fraction) : std::nullopt;
 }
 
-void Progress::Phase::finish(std::uint64_t done) {
+void ProgressLine::Phase::finish(std::uint64_t done) {
   state.done = done;
   state.finished = true;
   state.seconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void Progress::begin(const std::string& phase, const std::string& unit) {
+void ProgressLine::begin(const std::string& phase, const std::string& unit) {
   {
     const std::lock_guard lock(mutex_);
     phase_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
@@ -68,12 +68,12 @@ void Progress::begin(const std::string& phase, const std::string& unit) {
   }
 }
 
-void Progress::update(std::uint64_t done, std::optional<double> fraction) {
+void ProgressLine::update(std::uint64_t done, std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);
   phase_.update(done, fraction);
 }
 
-double Progress::end(std::uint64_t done) {
+double ProgressLine::end(std::uint64_t done) {
   ticker_ = {};
   const std::lock_guard lock(mutex_);
   phase_.finish(done);
@@ -81,17 +81,17 @@ double Progress::end(std::uint64_t done) {
   return phase_.state.seconds;
 }
 
-void Progress::begin_inner(const std::string& phase, const std::string& unit) {
+void ProgressLine::begin_inner(const std::string& phase, const std::string& unit) {
   const std::lock_guard lock(mutex_);
   inner_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
 }
 
-void Progress::update_inner(std::uint64_t done, std::optional<double> fraction) {
+void ProgressLine::update_inner(std::uint64_t done, std::optional<double> fraction) {
   const std::lock_guard lock(mutex_);
   if (inner_) inner_->update(done, fraction);
 }
 
-void Progress::end_inner(std::uint64_t done) {
+void ProgressLine::end_inner(std::uint64_t done) {
   const std::lock_guard lock(mutex_);
   if (!inner_) return;
   inner_->finish(done);
@@ -99,7 +99,7 @@ void Progress::end_inner(std::uint64_t done) {
   inner_.reset();
 }
 
-void Progress::tell(const spillway::Progress& state) {
+void ProgressLine::tell(const Progress& state) {
   using Event = spillway::Progress::Event;
   switch (state.event) {
     case Event::kBegun:
@@ -119,18 +119,18 @@ void Progress::tell(const spillway::Progress& state) {
   }
 }
 
-void Progress::give_up() {
+void ProgressLine::give_up() {
   ticker_ = {};
   const std::lock_guard lock(mutex_);
   inner_.reset();
   wipe(lock);
 }
 
-void Progress::say(std::string_view message) {
+void ProgressLine::say(std::string_view message) {
   if (!quiet_) insist(message);
 }
 
-void Progress::insist(std::string_view message) {
+void ProgressLine::insist(std::string_view message) {
   const std::lock_guard lock(mutex_);
   wipe(lock);
   if (style_ == ProgressStyle::kJson) {
@@ -140,15 +140,15 @@ void Progress::insist(std::string_view message) {
   }
 }
 
-void Progress::detail(std::string_view message) {
+void ProgressLine::detail(std::string_view message) {
   if (verbose_) say(message);
 }
 
-bool Progress::rewrites() const {
+bool ProgressLine::rewrites() const {
   return style_ == ProgressStyle::kTerminal || style_ == ProgressStyle::kTerminalOfAPipe;
 }
 
-void Progress::tick_until_stopped(const std::stop_token& stop) {
+void ProgressLine::tick_until_stopped(const std::stop_token& stop) {
   std::unique_lock sleep(sleep_mutex_);
   const auto never = [] { return false; };
   while (true) {
@@ -161,7 +161,8 @@ void Progress::tick_until_stopped(const std::stop_token& stop) {
   }
 }
 
-void Progress::show_end(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
+void ProgressLine::show_end(const PhaseState& state,
+                            const std::lock_guard<std::mutex>& lock) const {
   if (rewrites()) {
     wipe(lock);
   } else {
@@ -169,7 +170,7 @@ void Progress::show_end(const PhaseState& state, const std::lock_guard<std::mute
   }
 }
 
-void Progress::show(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
+void ProgressLine::show(const PhaseState& state, const std::lock_guard<std::mutex>& lock) const {
   switch (style_) {
     case ProgressStyle::kNone:
       break;
@@ -189,8 +190,8 @@ void Progress::show(const PhaseState& state, const std::lock_guard<std::mutex>& 
   }
 }
 
-void Progress::wipe(const std::lock_guard<std::mutex>& /*lock*/) const {
+void ProgressLine::wipe(const std::lock_guard<std::mutex>& /*lock*/) const {
   if (rewrites()) write_to_standard_error("\r\x1b[K");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -13,7 +13,7 @@
 
 #include "tools/report/progress_line.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 enum class ProgressStyle {
   kNone,
@@ -27,15 +27,15 @@ enum class ProgressStyle {
 /// All that a run says on standard error, errors excepted: progress and messages. The work is a
 /// sequence of phases. While one lasts, a thread of its own shows how far it is, so the work itself
 /// only counts. All functions may be called from any thread.
-class Progress {
+class ProgressLine {
  public:
   /// `quiet` silences say(), `verbose` lets detail() speak.
-  Progress(ProgressStyle style, bool quiet, bool verbose);
+  ProgressLine(ProgressStyle style, bool quiet, bool verbose);
 
   /// Wipes a line that is being rewritten, so that an error message finds a clean one.
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
 
   void begin(const std::string& phase, const std::string& unit);
   /// Says how far the phase is. Of what several threads say, in any order, the most counts; a
@@ -49,7 +49,7 @@ class Progress {
   void update_inner(std::uint64_t done, std::optional<double> fraction);
   void end_inner(std::uint64_t done);
   /// What the library tells of a run: one of the functions above.
-  void tell(const spillway::Progress& state);
+  void tell(const Progress& state);
   /// Ends a phase that failed, or none, without a line about it.
   void give_up();
 
@@ -89,4 +89,4 @@ class Progress {
   std::jthread ticker_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

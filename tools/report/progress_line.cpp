@@ -6,7 +6,7 @@
 
 #include "tools/report/json_text.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr double kLeastSeconds = 0.05;
@@ -66,4 +66,4 @@ std::string progress_json(const PhaseState& state) {
   return json_text(json);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -5,7 +5,9 @@
 #include <optional>
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// Where a phase of the work is.
 struct PhaseState {
@@ -34,4 +36,4 @@ std::string short_number(double number);
 /// 0:05, 12:34, 1:02:03.
 std::string clock_time(double seconds);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

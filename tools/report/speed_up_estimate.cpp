@@ -7,7 +7,7 @@
 
 #include "tools/report/usage_error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr unsigned kMostCores = 1U << 20;
@@ -59,4 +59,4 @@ std::string simulation_table(const std::vector<SimulatedRun>& runs) {
   return table;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

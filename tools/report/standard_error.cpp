@@ -13,7 +13,7 @@
 #include "tools/report/json_text.h"
 #include "tools/report/printable_text.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{200};
@@ -77,4 +77,4 @@ void last_message(std::string_view message) {
   if (takes_more) write_all(styled(message));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -3,7 +3,9 @@
 
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// How a run speaks to standard error.
 enum class MessageStyle {
@@ -27,4 +29,4 @@ void write_error(std::string_view message);
 /// end of the run by a signal.
 void last_message(std::string_view message);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 #include "src/runtime/process_memory.h"
 #include "tools/report/task_json.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 Json task_sums(const RunSums& sums) {
@@ -15,15 +15,16 @@ Json task_sums(const RunSums& sums) {
   return json;
 }
 
-Json phases(const RunFigures& figures) {
-  return {{"read", figures.read_seconds},
-          {"divide", figures.divide_seconds},
-          {"triangulate", figures.triangulate_seconds}};
+Json phases(const RunStatistics& statistics) {
+  return {{"read", statistics.read_seconds},
+          {"divide", statistics.divide_seconds},
+          {"triangulate", statistics.triangulate_seconds}};
 }
 
-Json stages(const RunFigures& figures) {
+Json stages(const RunStatistics& statistics) {
   Json json;
-  for (const StageSeconds& stage : figures.stages) json[std::string(stage.stage)] = stage.seconds;
+  for (const StageSeconds& stage : statistics.stages)
+    json[std::string(stage.stage)] = stage.seconds;
   return json;
 }
 
@@ -44,8 +45,8 @@ Json to_json(const RankMerge& merge) {
           {"triangulation_seconds", merge.triangulation_seconds}};
 }
 
-Json to_json(const RankFigures& rank, std::size_t number) {
-  const RunFigures& run = rank.run;
+Json to_json(const RankStatistics& rank, std::size_t number) {
+  const RunStatistics& run = rank.run;
   Json json = {{"rank", number},
                {"points", run.mesh.points},
                {"vertices", run.mesh.vertices},
@@ -97,11 +98,11 @@ Json to_json(const std::vector<SkippedFile>& files) {
 
 /// "ranks": what all of them have sent, and what each has done.
 Json ranks(const TracedReport& report) {
-  RankFigures sent;
+  RankStatistics sent;
   RankMerge merges;
   Json each = Json::array();
   std::size_t number = 0;
-  for (const RankFigures& rank : report.sums.ranks) {
+  for (const RankStatistics& rank : report.sums.ranks) {
     sent.points_sent += rank.points_sent;
     sent.point_bytes_sent += rank.point_bytes_sent;
     for (const RankMerge& merge : rank.merges) {
@@ -156,9 +157,9 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   json["phases"]["write"] = report.write_seconds;
   json["stages"] = stages(report);
   json["tiles"] = report.tiles;
-  json["tile_capacity"] = report.tile_capacity;
+  json["tile_capacity"] = report.tile_points;
   json["leaves"] = report.leaves;
-  json["leaf_size"] = report.leaf_size;
+  json["leaf_size"] = report.leaf_points;
   json["spilled_points"] = report.spilled_points;
   json["spilled_bytes"] = report.spilled_bytes;
   json["divided_points"] = report.divided_points;
@@ -184,4 +185,4 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   return json;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

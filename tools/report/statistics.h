@@ -11,7 +11,7 @@
 #include "stream/plan/run_trace.h"
 #include "tools/simulate/core_simulation.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What --stats tells of a run besides its report.
 struct RunFacts {
@@ -34,4 +34,4 @@ Json to_json(const TracedReport& report, const RunFacts& facts);
 /// "filters" of --stats and of `info`.
 Json to_json(const PointCounts& counts);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,7 +4,7 @@
 #include "tools/report/json_text.h"
 #include "tools/report/task_json.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 TaskFile::TaskFile(const std::string& path) : output_(disk().create(path)) {}
 
@@ -12,4 +12,4 @@ void TaskFile::write(const TaskNode& node) { output_.append(json_text(to_json(no
 
 void TaskFile::begin_again() { output_.append("{\"begun_again\":true}\n"); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

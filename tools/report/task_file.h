@@ -5,13 +5,13 @@
 #include "formats/bytes/buffered_output.h"
 #include "stream/plan/run_trace.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// The file of --tasks: a line of JSON for each node of the tree over tiles, as they come. It gets
 /// its name when it is complete.
 class TaskFile {
  public:
-  /// "-" is standard output. Throws Error if the file cannot be made; so do the others if it cannot
+  /// "-" is standard output. Throws Failure if the file cannot be made; so do the others if it cannot
   /// be written.
   explicit TaskFile(const std::string& path);
 
@@ -27,4 +27,4 @@ class TaskFile {
   BufferedOutput output_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

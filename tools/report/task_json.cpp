@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 const char* name_of(TaskKind kind) {
@@ -66,4 +66,4 @@ Json to_json(const TaskSum& sum) {
           {"pieces", sum.grains}};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

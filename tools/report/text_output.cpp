@@ -4,7 +4,7 @@
 
 #include "formats/disk/file_system.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 void write_text(const std::string& path, std::string_view text) {
   const auto output = disk().create(path);
@@ -12,4 +12,4 @@ void write_text(const std::string& path, std::string_view text) {
   output->commit();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -2,7 +2,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// The command was called wrongly; ends the run with exit code 2, as what the library calls an
 /// invalid argument does.
@@ -11,4 +11,4 @@ class UsageError : public InvalidArgument {
   using InvalidArgument::InvalidArgument;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::command {
 
 BlockPlayer::BlockPlayer(const RunModel& model, SimulatedMachine& machine)
     : model_(model), machine_(machine), submitted_(model.nodes.size()) {}
@@ -59,4 +59,4 @@ void BlockPlayer::tell_waiter() {
   then();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -8,7 +8,7 @@
 #include "tools/simulate/machine.h"
 #include "tools/simulate/run_model.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Plays the writing of blocks: one at a time, in the order of nodes and their parts.
 class BlockPlayer {
@@ -50,4 +50,4 @@ class BlockPlayer {
   SimulatedMachine::Then all_written_{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 #include "tools/simulate/resource.h"
 #include "tools/simulate/run_player.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// How many bottlenecks are told of, one behind the other, and what share of the time all but the
@@ -65,4 +65,4 @@ std::vector<SimulatedRun> simulate_cores(const RunModel& run, const std::vector<
   return runs;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

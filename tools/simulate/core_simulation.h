@@ -6,7 +6,7 @@
 
 #include "tools/simulate/run_model.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What shortens a run most if there is enough of it.
 struct Bottleneck {
@@ -34,4 +34,4 @@ std::vector<SimulatedRun> simulate_cores(const RunModel& run, const std::vector<
 /// level to level as those of the run are. Returns the run itself if the points are fewer.
 RunModel enlarge(const RunModel& run, std::uint64_t points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Whether no two things of it can run at the same time.
@@ -67,4 +67,4 @@ FlatTask enlarge(const FlatTask& task, double factor) {
   return large;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 
 #include "src/runtime/task.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// A task with all below it in little memory: as a row of nodes, parents first. What can only run
 /// one after the other is one node.
@@ -34,4 +34,4 @@ FlatTask flatten(const Task& task, double factor, bool with_children = true);
 /// The same task for so many times the work: longer, and of more grains, where it has many.
 FlatTask enlarge(const FlatTask& task, double factor);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

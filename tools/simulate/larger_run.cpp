@@ -4,7 +4,7 @@
 
 #include "tools/simulate/core_simulation.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Merges cannot grow faster than what is below them.
@@ -140,4 +140,4 @@ RunModel enlarge(const RunModel& run, std::uint64_t points) {
   return Enlargement(run, static_cast<std::uint32_t>(copies)).make();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 template <typename Item>
@@ -78,4 +78,4 @@ double SimulatedMachine::run() {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

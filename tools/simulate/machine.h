@@ -7,7 +7,9 @@
 #include <functional>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::command {
 
 /// What comes first when a core falls free.
 enum class Urgency : std::uint8_t {
@@ -76,4 +78,4 @@ class SimulatedMachine {
   std::deque<Then> at_once_;   ///< what takes no time
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr std::array kResources = {Resource::kCores,  Resource::kMemory,  Resource::kFetch,
@@ -84,4 +84,4 @@ SimulatedCores make_free(Resource resource, SimulatedCores on, const RunModel& r
   return on;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

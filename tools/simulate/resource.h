@@ -6,7 +6,7 @@
 #include "tools/simulate/run_model.h"
 #include "tools/simulate/run_player.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What a run may have to wait for.
 enum class Resource : std::uint8_t {
@@ -35,4 +35,4 @@ enum class Resource : std::uint8_t {
 void make_free(Resource resource, RunModel& run);
 [[nodiscard]] SimulatedCores make_free(Resource resource, SimulatedCores on, const RunModel& run);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

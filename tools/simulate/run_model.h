@@ -7,7 +7,7 @@
 #include "stream/plan/run_trace.h"
 #include "tools/simulate/flat_task.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What a batch of points costs on its way to the tiles. Times are seconds of a processor.
 struct BatchCost {
@@ -65,4 +65,4 @@ struct RunModel {
   [[nodiscard]] double total_seconds() const;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

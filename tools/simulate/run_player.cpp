@@ -7,7 +7,7 @@
 #include "tools/simulate/machine.h"
 #include "tools/simulate/tile_player.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 /// Plays batches of points on their way to the tiles, then the tiles that are left.
@@ -155,4 +155,4 @@ double RunModel::total_seconds() const {
 
 double play(const RunModel& run, const SimulatedCores& on) { return RunPlayer(run, on).play(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -2,7 +2,7 @@
 
 #include "tools/simulate/run_model.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// What a run is played on.
 struct SimulatedCores {
@@ -14,4 +14,4 @@ struct SimulatedCores {
 /// and moving data between cores costs nothing.
 double play(const RunModel& run, const SimulatedCores& on);
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -6,7 +6,7 @@
 
 #include "src/runtime/stage_times.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 bool is(const StageStep& step, Stage stage) {
@@ -148,11 +148,11 @@ void RunRecorder::node(const TaskNode& node) {
   model_.costs.push_back(std::move(cost));
 }
 
-RunModel RunRecorder::take(const RunFigures& figures, std::uint64_t output_bytes) {
+RunModel RunRecorder::take(const RunStatistics& statistics, std::uint64_t output_bytes) {
   model_.end = gap(0);
-  model_.points = figures.mesh.points;
+  model_.points = statistics.mesh.points;
   if (block_bytes_ > 0) model_.output_bytes = static_cast<double>(output_bytes) / block_bytes_;
   return std::move(model_);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

@@ -9,7 +9,7 @@
 #include "stream/plan/run_trace.h"
 #include "tools/simulate/run_model.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Makes a model of a run on one thread from what that tells while it goes on. Times are those of
 /// the processor, so that what else the machine does counts little; work between two steps counts
@@ -25,7 +25,7 @@ class RunRecorder {
   void node(const TaskNode& node);
 
   /// Once the run has ended.
-  RunModel take(const RunFigures& figures, std::uint64_t output_bytes);
+  RunModel take(const RunStatistics& statistics, std::uint64_t output_bytes);
 
  private:
   struct Read {
@@ -60,4 +60,4 @@ class RunRecorder {
   RunModel model_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

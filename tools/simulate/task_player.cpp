@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::command {
 
 void TaskPlayer::play(const FlatTask& task, Urgency urgency, SimulatedMachine::Then done) {
   if (task.nodes.size() <= 1) {  // most of them
@@ -86,4 +86,4 @@ void TaskPlayer::finish_one(std::size_t state) {
   if (--states_[state].pending == 0) advance(state);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

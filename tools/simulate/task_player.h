@@ -7,7 +7,7 @@
 #include "tools/simulate/flat_task.h"
 #include "tools/simulate/machine.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Plays tasks on a machine: steps one after the other, grains and children at the same time.
 class TaskPlayer {
@@ -43,4 +43,4 @@ class TaskPlayer {
   std::vector<std::size_t> unused_;  ///< of these
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

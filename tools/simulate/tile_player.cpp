@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::command {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
@@ -248,4 +248,4 @@ void TilePlayer::node_done(std::uint32_t node, Then done) {
   work_off(above, std::move(done));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

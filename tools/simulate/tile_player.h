@@ -12,7 +12,7 @@
 #include "tools/simulate/run_model.h"
 #include "tools/simulate/task_player.h"
 
-namespace spillway::detail {
+namespace spillway::command {
 
 /// Plays the work on tiles and their merges, as the engine goes about it: some lanes take what is
 /// ready, in order; who is done with the last child of a merge goes on with that.
@@ -100,4 +100,4 @@ class TilePlayer {
   bool ahead_wanted_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::command

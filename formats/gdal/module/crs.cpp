@@ -15,7 +15,7 @@
 #include "formats/gdal/module/gdal_errors.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // GDAL's measure of how well a system fits one of EPSG's: equal in all but its name.
@@ -124,9 +124,9 @@ OGRSpatialReference parse_crs(const std::string& crs) {
     std::string shown = crs.substr(0, kLongestQuote);
     std::replace(shown.begin(), shown.end(), '\n', ' ');
     if (crs.size() > kLongestQuote) shown += "...";
-    throw Error(fmt::format("\"{}\" is not a coordinate system ({}); give \"EPSG:n\" or WKT", shown,
-                            gdal_reason()),
-                ErrorCode::kInvalidArgument);
+    throw Failure(fmt::format("\"{}\" is not a coordinate system ({}); give \"EPSG:n\" or WKT",
+                              shown, gdal_reason()),
+                  ErrorCode::kInvalidArgument);
   }
   result.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return result;
@@ -157,8 +157,8 @@ std::string wkt_of(const OGRSpatialReference* crs) {
   std::string wkt = exported(*crs, "FORMAT=WKT1_GDAL");
   if (wkt.empty()) wkt = exported(*crs, "FORMAT=WKT2_2019");
   if (wkt.empty()) {
-    throw Error("cannot write a coordinate system as WKT: " + gdal_reason(),
-                ErrorCode::kInvalidArgument);
+    throw Failure("cannot write a coordinate system as WKT: " + gdal_reason(),
+                  ErrorCode::kInvalidArgument);
   }
   return wkt;
 }
@@ -188,9 +188,9 @@ CrsKind crs_kind(const std::string& crs) {
     if (parsed.IsProjected() != 0) return CrsKind::kProjected;
     if (parsed.IsGeographic() != 0) return CrsKind::kGeographic;
     return parsed.IsGeocentric() != 0 ? CrsKind::kGeocentric : CrsKind::kOther;
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return CrsKind::kUnknown;
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

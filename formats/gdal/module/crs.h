@@ -7,9 +7,9 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// The coordinate system that a text names, x east and y north. Throws Error if it names none.
+/// The coordinate system that a text names, x east and y north. Throws Failure if it names none.
 OGRSpatialReference parse_crs(const std::string& crs);
 
 /// Without what it says of heights.
@@ -25,4 +25,4 @@ CrsKind crs_kind(const std::string& crs);
 /// The coordinate system as Gdal::crs_to_wkt() gives it; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* crs);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

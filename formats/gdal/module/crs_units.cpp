@@ -9,7 +9,7 @@
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Metres in a unit of heights; 0 if the system tells none of heights.
@@ -46,4 +46,4 @@ std::string why_not_lonlat(const std::string& crs) {
   return way ? "" : gdal_reason();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,10 +6,10 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What the members of Gdal of these names return.
 CrsUnits crs_units(const std::string& crs);
 std::string why_not_lonlat(const std::string& crs);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

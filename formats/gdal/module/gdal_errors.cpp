@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 std::string& first_failure() {
@@ -36,4 +36,4 @@ std::string gdal_reason() {
 
 bool gdal_failed() { return !first_failure().empty(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

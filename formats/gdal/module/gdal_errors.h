@@ -2,7 +2,9 @@
 
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Keeps GDAL from printing on standard error; to be called once, when the module is loaded.
 void silence_gdal();
@@ -17,4 +19,4 @@ std::string gdal_reason();
 /// Whether GDAL has complained of a failure in this thread since they were forgotten.
 bool gdal_failed();
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/vector_drivers.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::vector<std::string> geopackage_tables(const std::string& path) {
   forget_gdal_errors();
@@ -29,4 +29,4 @@ std::vector<std::string> geopackage_tables(const std::string& path) {
   return names;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

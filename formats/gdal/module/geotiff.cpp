@@ -19,7 +19,7 @@
 #include "formats/gdal/module/gdal_errors.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// How far rows may be from square with columns, as a part of a pixel over the whole raster.
@@ -184,8 +184,8 @@ RasterGrid read_geotiff_grid(const std::string& path) {
   const GDALDatasetUniquePtr file(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
   if (!file) {
-    throw Error(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
-                {.file = path});
+    throw Failure(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
+                  {.file = path});
   }
   std::array<double, 6> transform{};
   if (file->GetGeoTransform(transform.data()) != CE_None) {
@@ -203,4 +203,4 @@ RasterGrid read_geotiff_grid(const std::string& path) {
   return {{west, north, width, columns, rows}, wkt_of(file->GetSpatialRef())};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

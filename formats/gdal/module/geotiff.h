@@ -6,7 +6,7 @@
 
 #include "formats/gdal/raster.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What Gdal::check_raster_driver() does.
 void check_geotiff_driver(const RasterOptions& options);
@@ -17,4 +17,4 @@ std::unique_ptr<Raster> create_geotiff(const RasterOptions& options);
 /// What Gdal::read_raster_grid() returns.
 RasterGrid read_geotiff_grid(const std::string& path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,7 +16,7 @@
 #include "formats/gdal/module/crs.h"
 #include "formats/gdal/module/gdal_errors.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Types of TIFF's values (TIFF 6.0, p. 15), and the bytes of each.
@@ -182,4 +182,4 @@ std::string crs_of_geotiff_keys(const GeotiffKeys& keys, CrsKind kind) {
   return last.crs;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

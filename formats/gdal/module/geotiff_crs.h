@@ -5,9 +5,9 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What Gdal::crs_of_geotiff_keys() returns.
 std::string crs_of_geotiff_keys(const GeotiffKeys& keys, CrsKind kind);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

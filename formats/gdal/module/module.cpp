@@ -16,7 +16,7 @@
 #include "formats/gdal/module/geotiff_crs.h"
 #include "formats/gdal/vector_drivers.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// In an archive that brings GDAL along, its tables do not lie where it was built to look. A folder
@@ -45,29 +45,29 @@ class LoadedGdal : public Gdal {
   }
 
   [[nodiscard]] bool same_crs(const std::string& a, const std::string& b) const override {
-    return spillway::detail::same_crs(a, b);
+    return spillway::formats::same_crs(a, b);
   }
   [[nodiscard]] std::string crs_to_wkt(const std::string& crs) const override {
-    return spillway::detail::crs_to_wkt(crs);
+    return spillway::formats::crs_to_wkt(crs);
   }
   [[nodiscard]] std::string crs_name(const std::string& crs) const override {
-    return spillway::detail::crs_name(crs);
+    return spillway::formats::crs_name(crs);
   }
   [[nodiscard]] double crs_unit(const std::string& crs) const override {
-    return spillway::detail::crs_unit(crs);
+    return spillway::formats::crs_unit(crs);
   }
   [[nodiscard]] CrsKind crs_kind(const std::string& crs) const override {
-    return spillway::detail::crs_kind(crs);
+    return spillway::formats::crs_kind(crs);
   }
   [[nodiscard]] CrsUnits crs_units(const std::string& crs) const override {
-    return spillway::detail::crs_units(crs);
+    return spillway::formats::crs_units(crs);
   }
   [[nodiscard]] std::string crs_of_geotiff_keys(const GeotiffKeys& keys,
                                                 CrsKind kind) const override {
-    return spillway::detail::crs_of_geotiff_keys(keys, kind);
+    return spillway::formats::crs_of_geotiff_keys(keys, kind);
   }
   [[nodiscard]] std::string why_not_lonlat(const std::string& crs) const override {
-    return spillway::detail::why_not_lonlat(crs);
+    return spillway::formats::why_not_lonlat(crs);
   }
   [[nodiscard]] std::unique_ptr<VectorLayer> create_layer(
       const VectorLayerOptions& options) const override {
@@ -91,13 +91,13 @@ class LoadedGdal : public Gdal {
 };
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::formats
 
 extern "C" __attribute__((visibility("default"))) const char* spillway_gdal_version() {
   return SPILLWAY_VERSION_TEXT;
 }
 
-extern "C" __attribute__((visibility("default"))) const spillway::detail::Gdal* spillway_gdal() {
-  static const spillway::detail::LoadedGdal instance;
+extern "C" __attribute__((visibility("default"))) const spillway::formats::Gdal* spillway_gdal() {
+  static const spillway::formats::LoadedGdal instance;
   return &instance;
 }

@@ -19,7 +19,7 @@
 #include "formats/gdal/vector_drivers.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
@@ -208,4 +208,4 @@ std::unique_ptr<VectorLayer> create_ogr_layer(const VectorLayerOptions& options)
   return std::make_unique<OgrLayer>(options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -14,7 +14,7 @@
 #include "formats/gdal/vector_drivers.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 WorldPoint point_of(const OGRLineString& line, int i) {
@@ -123,8 +123,8 @@ class OgrTriangles : public TriangleLayer {
   }
 
   [[noreturn]] void fail(const std::string& what, FilePlace place = {}) const {
-    throw Error(fmt::format("cannot read {}: {}", path_, what), ErrorCode::kBadInput,
-                {.file = path_, .place = place});
+    throw Failure(fmt::format("cannot read {}: {}", path_, what), ErrorCode::kBadInput,
+                  {.file = path_, .place = place});
   }
 
   std::string path_;
@@ -140,4 +140,4 @@ std::unique_ptr<TriangleLayer> open_ogr_layer(const std::string& path) {
   return std::make_unique<OgrTriangles>(path);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,13 +7,13 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-CheckedMeshWriter::CheckedMeshWriter(MeshHeader header, std::string name)
+CheckedMeshWriter::CheckedMeshWriter(MeshFileHeader header, std::string name)
     : header_(std::move(header)), name_(std::move(name)) {
   if (!header_.global_ids) return;
   std::uint64_t ids = 0;
-  for (const IdRun& run : *header_.global_ids) ids += run.count;
+  for (const IdRange& run : *header_.global_ids) ids += run.count;
   if (ids != header_.vertices) {
     fail(fmt::format("{} vertices were promised, but {} ids for them", header_.vertices, ids));
   }
@@ -82,4 +82,4 @@ void CheckedMeshWriter::fail(const std::string& what, ErrorCode code) const {
   throw CannotWrite(name_, what, code);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

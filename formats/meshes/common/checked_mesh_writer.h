@@ -6,7 +6,7 @@
 #include "formats/meshes/common/mesh_writer.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What all mesh writers have in common: that numbers add up to the header's and that vertex
 /// numbers are valid is checked here; a format only puts values down.
@@ -21,7 +21,7 @@ class CheckedMeshWriter : public MeshWriter {
 
  protected:
   /// `name` is that of the output, for messages.
-  CheckedMeshWriter(MeshHeader header, std::string name);
+  CheckedMeshWriter(MeshFileHeader header, std::string name);
 
   /// Appends vertices that have passed the checks.
   virtual void put_vertices(std::span<const WorldPoint> vertices,
@@ -37,7 +37,7 @@ class CheckedMeshWriter : public MeshWriter {
   /// Called once, after all vertices and simplices.
   virtual void complete() = 0;
 
-  [[nodiscard]] const MeshHeader& header() const { return header_; }
+  [[nodiscard]] const MeshFileHeader& header() const { return header_; }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::size_t corners_per_simplex() const { return header_.dimension + 1; }
   [[noreturn]] void fail(const std::string& what,
@@ -46,10 +46,10 @@ class CheckedMeshWriter : public MeshWriter {
  private:
   void check_vertices_again() const;
 
-  MeshHeader header_;
+  MeshFileHeader header_;
   std::string name_;
   std::uint64_t vertices_ = 0;   // written so far, since they began to come (again)
   std::uint64_t simplices_ = 0;  // written so far
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"red", "green", "blue"};
@@ -67,4 +67,4 @@ void ColourDepth::add(std::span<const std::byte> records) {
   if (bits > kLargestByte) exceeds_ = true;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

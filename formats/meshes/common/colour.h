@@ -9,7 +9,7 @@
 
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The attributes `red`, `green` and `blue`, of 8 bits or of 16.
 using ColourFields = std::array<AttributeField, 3>;
@@ -45,4 +45,4 @@ class ColourDepth {
   std::atomic<bool> exceeds_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename T>
@@ -18,7 +18,7 @@ std::vector<T> part_of(const std::vector<T>& values, std::size_t first, std::siz
 
 class Division {
  public:
-  Division(const MeshBlock& whole, std::size_t corners, std::size_t size)
+  Division(const MeshStreamBlock& whole, std::size_t corners, std::size_t size)
       : whole_(whole),
         corners_(corners),
         size_(size),
@@ -26,7 +26,7 @@ class Division {
         short_numbers_(blocks_.size()),
         last_use_(whole.vertices.size()) {}
 
-  std::vector<MeshBlock> divide(std::size_t record_size) {
+  std::vector<MeshStreamBlock> divide(std::size_t record_size) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const std::size_t first = b * size_;
       const std::size_t end = std::min(first + size_, whole_.vertices.size());
@@ -45,7 +45,7 @@ class Division {
  private:
   void add(std::span<const std::uint32_t> simplex) {
     const std::size_t b = *std::ranges::max_element(simplex) / size_;
-    MeshBlock& block = blocks_[b];
+    MeshStreamBlock& block = blocks_[b];
     for (const std::uint32_t vertex : simplex) {
       last_use_[vertex] = std::max(last_use_[vertex], b);
       block.corners.push_back(vertex >= b * size_ ? static_cast<std::uint32_t>(vertex - b * size_)
@@ -55,7 +55,7 @@ class Division {
 
   /// The short number of a vertex of an earlier block.
   std::uint32_t imported(std::size_t b, std::uint32_t vertex) {
-    MeshBlock& block = blocks_[b];
+    MeshStreamBlock& block = blocks_[b];
     const auto next = static_cast<std::uint32_t>(block.vertices.size() + block.imported.size());
     const auto [known, is_new] = short_numbers_[b].try_emplace(vertex, next);
     if (is_new) block.imported.push_back(vertex);
@@ -63,7 +63,7 @@ class Division {
   }
 
   void finalize(std::size_t b) {
-    MeshBlock& block = blocks_[b];
+    MeshStreamBlock& block = blocks_[b];
     const auto own = static_cast<std::uint32_t>(block.vertices.size());
     for (std::uint32_t i = 0; i < own; ++i) {
       if (last_use_[b * size_ + i] == b) block.finalized.push_back(i);
@@ -73,19 +73,19 @@ class Division {
     }
   }
 
-  const MeshBlock& whole_;
+  const MeshStreamBlock& whole_;
   std::size_t corners_;
   std::size_t size_;
-  std::vector<MeshBlock> blocks_;
+  std::vector<MeshStreamBlock> blocks_;
   std::vector<std::unordered_map<std::uint32_t, std::uint32_t>> short_numbers_;  // of imported ones
   std::vector<std::size_t> last_use_;  // by vertex: the block
 };
 
 }  // namespace
 
-std::vector<MeshBlock> divided(const MeshBlock& whole, std::size_t corners, std::size_t record_size,
-                               std::size_t size) {
+std::vector<MeshStreamBlock> divided(const MeshStreamBlock& whole, std::size_t corners,
+                                     std::size_t record_size, std::size_t size) {
   return Division(whole, corners, size).divide(record_size);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

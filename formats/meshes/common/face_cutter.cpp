@@ -7,7 +7,7 @@
 #include "formats/meshes/common/polygon_outline.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void FaceCutter::check_length(std::uint64_t corners, const FaceName& face) const {
   if (corners < 3) fail(face, fmt::format("it has {} corners; a face has three or more", corners));
@@ -73,4 +73,4 @@ void FaceCutter::fail(const FaceName& face, std::string_view what) const {
   throw BadInput::at(file_, face.place, text);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/polygon_cutter.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A face of a file, for messages.
 struct FaceName {
@@ -30,16 +30,16 @@ class FaceCutter {
   FaceCutter(const std::string& file, Mesh& mesh, std::string_view kind = "face")
       : file_(file), mesh_(mesh), kind_(kind) {}
 
-  /// Throws Error for a number of corners that no face has that is read.
+  /// Throws Failure for a number of corners that no face has that is read.
   void check_length(std::uint64_t corners, const FaceName& face) const;
 
   /// Appends the triangles of a face. A polygon with a vertex that is not yet in the mesh waits for
-  /// finish(). Throws Error for lengths as check_length() does, and for a polygon that names a
+  /// finish(). Throws Failure for lengths as check_length() does, and for a polygon that names a
   /// vertex twice or whose outline in x and y is not simple.
   void add(std::span<const std::uint64_t> corners, const FaceName& face);
 
   /// Cuts the polygons that wait, counts the mesh's triangles in its header, and says in its
-  /// notices how many polygons were cut. All corners must be vertices of the mesh. Throws Error as
+  /// notices how many polygons were cut. All corners must be vertices of the mesh. Throws Failure as
   /// add() does.
   void finish();
 
@@ -65,4 +65,4 @@ class FaceCutter {
   std::uint64_t triangles_ = 0;  ///< that the polygons became
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,13 +6,13 @@
 
 #include "formats/meshes/common/mesh.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The numbers of IdRuns, one after another.
 class GlobalIds {
  public:
   /// `runs` must outlive it; for as many vertices as are asked for.
-  explicit GlobalIds(std::span<const IdRun> runs) : runs_(runs) {}
+  explicit GlobalIds(std::span<const IdRange> runs) : runs_(runs) {}
 
   std::uint64_t next() {
     while (given_ == runs_.front().count) {
@@ -23,12 +23,12 @@ class GlobalIds {
   }
 
  private:
-  std::span<const IdRun> runs_;
+  std::span<const IdRange> runs_;
   std::uint64_t given_ = 0;  // of the first run
 };
 
 /// Appends a vertex, to the last run if it goes on there.
-inline void append_id(std::vector<IdRun>& runs, std::uint64_t id, std::uint64_t count = 1) {
+inline void append_id(std::vector<IdRange>& runs, std::uint64_t id, std::uint64_t count = 1) {
   if (count == 0) return;
   if (!runs.empty() && runs.back().first + runs.back().count == id) {
     runs.back().count += count;
@@ -37,4 +37,4 @@ inline void append_id(std::vector<IdRun>& runs, std::uint64_t id, std::uint64_t 
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

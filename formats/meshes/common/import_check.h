@@ -5,7 +5,7 @@
 
 #include "formats/meshes/common/stream_vertices.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Checks for a reader that blocks import only vertices that are live, each once.
 class ImportCheck {
@@ -20,7 +20,7 @@ class ImportCheck {
   }
 
   /// Ends the block in work, whose short numbers are known to stand for vertices.
-  void settle(const MeshBlock& block) {
+  void settle(const MeshStreamBlock& block) {
     live_.settle(block, [this](std::uint32_t) { return block_; });
     ++block_;
   }
@@ -33,4 +33,4 @@ class ImportCheck {
   std::uint64_t block_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr int kDigits = 9;
@@ -32,4 +32,4 @@ std::optional<std::array<float, 3>> to_local(const WorldPoint& vertex, const Wor
   return local;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

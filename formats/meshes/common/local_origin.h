@@ -5,7 +5,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// An origin for a mesh with this vertex: its coordinates rounded to whole numbers, and to nine
 /// digits, so that it can be said in few characters.
@@ -14,4 +14,4 @@ WorldPoint local_origin(const WorldPoint& vertex);
 /// `vertex` as seen from `origin`, rounded to float; nothing if that is beyond float's range.
 std::optional<std::array<float, 3>> to_local(const WorldPoint& vertex, const WorldPoint& origin);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

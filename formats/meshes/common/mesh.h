@@ -13,25 +13,26 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Vertices one after another whose numbers in a larger mesh count up by one.
-struct IdRun {
+struct IdRange {
   std::uint64_t first = 0;  ///< number of the first
   std::uint64_t count = 0;  ///< of vertices
 };
 
 /// What a mesh file says about itself.
-struct MeshHeader {
-  int dimension = 2;               ///< 2: triangles, 3: tetrahedra
-  std::uint64_t vertices = 0;      ///< number of vertices
-  std::uint64_t simplices = 0;     ///< number of finite simplices
-  bool has_input_index = false;    ///< each vertex carries its index in the input
-  std::optional<Lattice> lattice;  ///< set if every coordinate is lattice.to_world of an integer
-  std::string crs;                 ///< coordinate system as WKT or PROJ text, empty if unknown
+struct MeshFileHeader {
+  int dimension = 2;             ///< 2: triangles, 3: tetrahedra
+  std::uint64_t vertices = 0;    ///< number of vertices
+  std::uint64_t simplices = 0;   ///< number of finite simplices
+  bool has_input_index = false;  ///< each vertex carries its index in the input
+  std::optional<IntegerLattice>
+      lattice;      ///< set if every coordinate is lattice.to_world of an integer
+  std::string crs;  ///< coordinate system as WKT or PROJ text, empty if unknown
   /// Of a part of a larger mesh: which of its vertices these are. Only PLY and VTU have a place for
   /// them; readers pass over it.
-  std::optional<std::vector<IdRun>> global_ids{};
+  std::optional<std::vector<IdRange>> global_ids{};
   AttributeLayout attributes{};  ///< that each vertex carries
   /// Whether all numbers of the attributes `red`, `green` and `blue` are known to be below 256:
   /// then they are bytes, though they may be of 16 bits, as LAS has no others.
@@ -40,7 +41,7 @@ struct MeshHeader {
 
 /// A whole mesh in memory, as `check`, `info` and `convert` read it.
 struct Mesh {
-  MeshHeader header;
+  MeshFileHeader header;
   std::vector<WorldPoint> vertices;        ///< output coordinates; z is 0 where the file has none
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
@@ -52,4 +53,4 @@ struct Mesh {
   [[nodiscard]] std::size_t corners_per_simplex() const { return header.dimension + 1; }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

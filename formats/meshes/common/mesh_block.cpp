@@ -4,9 +4,9 @@
 
 #include "formats/meshes/common/stream_numbers.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
+void append_stream_numbers(const MeshStreamBlock& block, std::uint64_t first,
                            std::vector<std::uint64_t>& corners) {
   const StreamNumbers numbers(first, block);
   const std::size_t begin = corners.size();
@@ -15,8 +15,8 @@ void append_stream_numbers(const MeshBlock& block, std::uint64_t first,
                  [&numbers](std::uint32_t v) { return numbers[v]; });
 }
 
-MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals) {
-  MeshHeader mesh;
+MeshFileHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& totals) {
+  MeshFileHeader mesh;
   mesh.dimension = header.dimension;
   mesh.vertices = totals.vertices;
   mesh.simplices = totals.simplices;
@@ -28,7 +28,8 @@ MeshHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& tota
 }
 
 std::optional<std::vector<LatticePoint>> vertices_on_lattice(const Mesh& mesh,
-                                                             const Lattice& lattice, int axes) {
+                                                             const IntegerLattice& lattice,
+                                                             int axes) {
   std::vector<LatticePoint> vertices = vertices_without_lattice(mesh);
   for (LatticePoint& vertex : vertices) {
     for (int k = 0; k < axes; ++k) {
@@ -47,7 +48,8 @@ std::vector<LatticePoint> vertices_without_lattice(const Mesh& mesh) {
   return vertices;
 }
 
-std::vector<WorldPoint> world_vertices(const MeshStreamHeader& header, const MeshBlock& block) {
+std::vector<WorldPoint> world_vertices(const MeshStreamHeader& header,
+                                       const MeshStreamBlock& block) {
   std::vector<WorldPoint> vertices;
   vertices.reserve(block.vertices.size());
   for (const LatticePoint& vertex : block.vertices) {
@@ -56,4 +58,4 @@ std::vector<WorldPoint> world_vertices(const MeshStreamHeader& header, const Mes
   return vertices;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

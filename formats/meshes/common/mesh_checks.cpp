@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void fail_for_point_cloud(const std::string& file, std::string_view format) {
   throw BadInput(file,
@@ -14,4 +14,4 @@ void fail_for_point_cloud(const std::string& file, std::string_view format) {
                              format));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

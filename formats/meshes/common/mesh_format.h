@@ -16,7 +16,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct MeshFormat;
 
@@ -27,7 +27,7 @@ struct MeshContents {
   bool has_attributes = false;
 };
 
-/// Those that a header tells: MeshHeader or MeshStreamHeader.
+/// Those that a header tells: MeshFileHeader or MeshStreamHeader.
 template <typename Header>
 MeshContents contents_of(const Header& header) {
   return {header.dimension, header.has_input_index, !header.attributes.empty()};
@@ -56,13 +56,13 @@ struct MeshFileSet {
   bool (*is_meant)(const FileSystem& files, const std::string& path);
   /// Whether `path` is one of the files of a mesh that is there.
   bool (*has_part)(const FileSystem& files, const std::string& path);
-  /// Throws Error if `path` is a file of a mesh that is there, and none that could be points.
+  /// Throws Failure if `path` is a file of a mesh that is there, and none that could be points.
   void (*check_is_points)(const FileSystem& files, const std::string& path);
-  /// Throws Error if the source is one such file, but not the mesh that `path` would be.
+  /// Throws Failure if the source is one such file, but not the mesh that `path` would be.
   void (*check_is_no_part)(InputBytes& source, const std::string& path);
-  /// Throws Error unless all files are there.
+  /// Throws Failure unless all files are there.
   Mesh (*read)(FileSystem& files, const std::string& path);
-  /// Throws Error for standard output.
+  /// Throws Failure for standard output.
   MeshFiles (*create)(FileSystem& files, const std::string& path, const MeshContents& contents);
   /// The files that a mesh is written to, in words.
   std::string (*names)(const std::string& path);
@@ -103,7 +103,7 @@ struct MeshFormat {
   /// Of a stream: whether what nothing else tells of may be of this format, by its first bytes.
   bool (*resembles)(std::string_view first_bytes) = nullptr;
   /// Whether a file of this format has simplices; without, it is a cloud of points. Null if all are
-  /// meshes. Throws Error if the header is damaged.
+  /// meshes. Throws Failure if the header is damaged.
   bool (*has_simplices)(InputBytes& source) = nullptr;
   /// Of a file of Spillway's, the point from which its coordinates are seen, which programs of
   /// others do not know; null if all formats' readers do, or if it is always 0, 0, 0.
@@ -118,7 +118,8 @@ struct MeshFormat {
   Mesh (*read_table)(const std::string& path) = nullptr;
 
   /// Writes a whole mesh, whose numbers of vertices and simplices are known.
-  std::unique_ptr<MeshWriter> (*open_writer)(MeshFiles files, const MeshHeader& header) = nullptr;
+  std::unique_ptr<MeshWriter> (*open_writer)(MeshFiles files,
+                                             const MeshFileHeader& header) = nullptr;
   /// Writes a mesh block by block.
   std::unique_ptr<MeshStreamWriter> (*open_block_writer)(MeshFiles files,
                                                          const MeshStreamHeader& header) = nullptr;
@@ -138,4 +139,4 @@ struct MeshFormat {
 /// Some formats of meshes, in the order in which they are listed.
 using MeshFormats = std::span<const MeshFormat* const>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

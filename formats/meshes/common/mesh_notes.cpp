@@ -8,14 +8,14 @@
 
 #include "formats/bytes/fields.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kLatticeNote = "spillway lattice ";
 
 }  // namespace
 
-std::vector<std::string> mesh_notes(const MeshHeader& header, std::size_t longest_crs) {
+std::vector<std::string> mesh_notes(const MeshFileHeader& header, std::size_t longest_crs) {
   std::vector<std::string> notes{fmt::format("spillway dimension {}", header.dimension)};
   if (header.lattice) {
     notes.push_back(fmt::format("{}{} {}", kLatticeNote, fmt::join(header.lattice->scale, " "),
@@ -26,7 +26,7 @@ std::vector<std::string> mesh_notes(const MeshHeader& header, std::size_t longes
   return notes;
 }
 
-bool read_mesh_note(std::string_view comment, MeshHeader& header) {
+bool read_mesh_note(std::string_view comment, MeshFileHeader& header) {
   if (read_crs_note(comment, header.crs)) return true;
   if (comment.starts_with(kLatticeNote)) {
     Fields fields(comment.substr(kLatticeNote.size()));
@@ -42,8 +42,8 @@ bool read_mesh_note(std::string_view comment, MeshHeader& header) {
   return true;
 }
 
-std::optional<Lattice> lattice_of(std::span<const double> numbers) {
-  Lattice lattice;
+std::optional<IntegerLattice> lattice_of(std::span<const double> numbers) {
+  IntegerLattice lattice;
   if (numbers.size() != 6) return std::nullopt;
   for (int axis = 0; axis < 3; ++axis) {
     lattice.scale[axis] = numbers[axis];
@@ -56,4 +56,4 @@ std::optional<Lattice> lattice_of(std::span<const double> numbers) {
   return lattice;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void BlockSink::save(StateWriter& /*state*/) {
   throw std::logic_error("this output cannot go on: a fault of the program");
@@ -12,4 +12,4 @@ void BlockSink::restore(StateReader& /*state*/) {
   throw std::logic_error("this output cannot go on: a fault of the program");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,16 +16,17 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 class StateReader;
 class StateWriter;
 
 /// What a mesh stream says before its first block.
 struct MeshStreamHeader {
-  int dimension = 2;                    ///< 2: triangles with z carried along, 3: tetrahedra
-  bool has_input_index = false;         ///< each vertex carries its index in the input
-  std::optional<Lattice> lattice;       ///< set if the coordinates of blocks are to be mapped by it
+  int dimension = 2;             ///< 2: triangles with z carried along, 3: tetrahedra
+  bool has_input_index = false;  ///< each vertex carries its index in the input
+  std::optional<IntegerLattice>
+      lattice;                          ///< set if the coordinates of blocks are to be mapped by it
   std::optional<std::uint64_t> points;  ///< of the input, where known beforehand
   std::optional<Box<3>> extent;         ///< of the points, in output coordinates, where known
   std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
@@ -47,7 +48,7 @@ class AbsorbedBlock {
 /// Some vertices and simplices. The stream numbers its vertices 0, 1, 2, ... in the order in which
 /// they come; inside a block, vertices have short numbers: first those of `vertices`, then those of
 /// `imported`.
-struct MeshBlock {
+struct MeshStreamBlock {
   /// Vertices that come for the first time. On the header's lattice if there is one (x, y and, in
   /// space, z are integers; in the plane z may lie between), else in output coordinates.
   std::vector<LatticePoint> vertices;
@@ -88,11 +89,11 @@ class BlockSink {
   /// it. Called at most once for a block, by many threads at once and in any order, also beside
   /// write(): what a sink changes here besides the block must be safe for that. Stream numbers,
   /// and so `imported`, are not known yet.
-  virtual void absorb(MeshBlock& /*block*/) {}
+  virtual void absorb(MeshStreamBlock& /*block*/) {}
 
   /// Takes the next block of the stream, absorbed or not: its vertices get the next stream numbers.
   /// By one thread at a time, so that what only write() uses needs no guard.
-  virtual void write(MeshBlock&& block) = 0;
+  virtual void write(MeshStreamBlock&& block) = 0;
 
   /// For another process to go on after the blocks so far, of sinks that can. Brings what has come
   /// of all blocks so far to the disk, and tells what else another process needs to go on; and goes
@@ -105,7 +106,7 @@ class BlockSink {
 };
 
 /// Writes a mesh to a file. Nothing appears under the final name before finish(); a writer that is
-/// destroyed without it leaves nothing behind. finish() throws Error if the totals' vertices and
+/// destroyed without it leaves nothing behind. finish() throws Failure if the totals' vertices and
 /// simplices are not what was written.
 class MeshStreamWriter : public BlockSink {
  public:
@@ -122,8 +123,8 @@ class MeshStreamReader {
 
   /// Replaces `block` by the next one; false at the end. Every number in it is checked: short ones
   /// against the block, imported ones against what is announced and not finalized; coordinates are
-  /// finite. Throws Error with the file's name and the byte or line, also if the file is cut short.
-  virtual bool read(MeshBlock& block) = 0;
+  /// finite. Throws Failure with the file's name and the byte or line, also if the file is cut short.
+  virtual bool read(MeshStreamBlock& block) = 0;
 
   /// The totals that the stream ends with; once read() has returned false. Formats without them
   /// (.sma) count vertices and simplices and leave the rest 0; `has_hash` tells them apart.
@@ -134,4 +135,4 @@ class MeshStreamReader {
   [[nodiscard]] virtual std::optional<double> fraction_read() const = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

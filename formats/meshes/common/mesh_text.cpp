@@ -6,7 +6,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/number_type.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // No line is longer: four numbers of at most 24 characters, and a short keyword.
@@ -56,4 +56,4 @@ void append_simplex(BufferedOutput& output, std::string_view keyword,
 
 void append_line_end(BufferedOutput& output) { output.append("\n"); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

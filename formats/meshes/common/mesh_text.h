@@ -10,7 +10,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Appends `before` and x, y, z with the fewest digits that give the same doubles again, separated
 /// by blanks.
@@ -30,4 +30,4 @@ void append_simplex(BufferedOutput& output, std::string_view keyword,
 
 void append_line_end(BufferedOutput& output);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

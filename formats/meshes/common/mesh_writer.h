@@ -6,7 +6,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes one mesh: first all vertices, in blocks of any size, once more while
 /// begin_vertices_again(), then all simplices, then finish().
@@ -29,8 +29,8 @@ class MeshWriter {
   /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
   virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;
 
-  /// Completes the file and gives it its final name. Throws Error if anything is missing.
+  /// Completes the file and gives it its final name. Throws Failure if anything is missing.
   virtual void finish() = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

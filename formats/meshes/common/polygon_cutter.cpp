@@ -7,7 +7,7 @@
 #include "formats/meshes/common/polygon_outline.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::span<const PolygonCutter::Triangle> PolygonCutter::cut(std::span<const Point<2>> outline) {
   points_.assign(outline.begin(), outline.end());
@@ -142,4 +142,4 @@ bool PolygonCutter::flip_if_needed(std::uint32_t first, std::size_t side) {
   return true;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Cuts simple polygons into triangles, one polygon after another in the same memory.
 ///
@@ -56,4 +56,4 @@ class PolygonCutter {
   std::vector<Neighbours> neighbours_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// One side of a polygon, with the ends of the box around it.
@@ -75,4 +75,4 @@ bool is_counterclockwise(std::span<const Point<2>> outline) {
                          outline[(least + 1) % count]}) > 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The stream numbers of a block's vertices, by their short numbers.
 class StreamNumbers {
@@ -15,7 +15,7 @@ class StreamNumbers {
   /// it.
   StreamNumbers(std::uint64_t first, std::size_t fresh, std::span<const std::uint64_t> imported)
       : first_(first), fresh_(fresh), imported_(imported) {}
-  StreamNumbers(std::uint64_t first, const MeshBlock& block)
+  StreamNumbers(std::uint64_t first, const MeshStreamBlock& block)
       : StreamNumbers(first, block.vertices.size(), block.imported) {}
 
   /// Number of vertices of the block.
@@ -31,4 +31,4 @@ class StreamNumbers {
   std::span<const std::uint64_t> imported_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

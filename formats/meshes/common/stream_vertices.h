@@ -10,7 +10,7 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The vertices of a mesh stream that are announced and may still be used, each with a value: as
 /// few as the border, as those that come and go within one block are never entered.
@@ -23,14 +23,14 @@ class StreamVertices : public LiveVertices<Value> {
   /// Appends the values of the vertices that a block imports to those of the vertices it announces,
   /// so that `values` is by short number. Throws std::out_of_range if one is not live, which
   /// streams from a reader or from the engine never have.
-  void append_imported(const MeshBlock& block, std::vector<Value>& values) const {
+  void append_imported(const MeshStreamBlock& block, std::vector<Value>& values) const {
     for (const std::uint64_t number : block.imported) values.push_back(this->at(number));
   }
 
   /// Ends a block: forgets the vertices that it finalizes and enters those that it announces and
   /// does not finalize. `value_of(v)` is the value of the one with short number v.
   template <std::invocable<std::uint32_t> ValueOf>
-  void settle(const MeshBlock& block, const ValueOf& value_of) {
+  void settle(const MeshStreamBlock& block, const ValueOf& value_of) {
     const std::size_t fresh = block.vertices.size();
     finalized_.assign(fresh, false);
     for (const std::uint32_t v : block.finalized) {
@@ -45,7 +45,7 @@ class StreamVertices : public LiveVertices<Value> {
     }
     announce(fresh);
   }
-  void settle(const MeshBlock& block, std::span<const Value> values) {
+  void settle(const MeshStreamBlock& block, std::span<const Value> values) {
     settle(block, [values](std::uint32_t v) { return values[v]; });
   }
 
@@ -72,4 +72,4 @@ class StreamVertices : public LiveVertices<Value> {
   std::vector<bool> finalized_;  ///< of the block that is settled, by short number
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,12 +8,12 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 TriangleStreamWriter::TriangleStreamWriter(MeshStreamHeader header, std::string name)
     : header_(std::move(header)), name_(std::move(name)) {}
 
-void TriangleStreamWriter::write(MeshBlock&& block) {
+void TriangleStreamWriter::write(MeshStreamBlock&& block) {
   take_positions(block);
   check_short_numbers(block);
   if (block.corners.size() % 3 != 0) fail("a block's corners make no whole number of triangles");
@@ -35,7 +35,7 @@ void TriangleStreamWriter::finish(const MeshTotals& totals) {
   complete();
 }
 
-void TriangleStreamWriter::take_positions(const MeshBlock& block) {
+void TriangleStreamWriter::take_positions(const MeshStreamBlock& block) {
   positions_ = world_vertices(header_, block);
   for (const WorldPoint& vertex : positions_) {
     for (const double coordinate : vertex) {
@@ -54,7 +54,7 @@ void TriangleStreamWriter::take_positions(const MeshBlock& block) {
   }
 }
 
-void TriangleStreamWriter::check_short_numbers(const MeshBlock& block) const {
+void TriangleStreamWriter::check_short_numbers(const MeshStreamBlock& block) const {
   for (const auto* const numbers : {&block.corners, &block.finalized}) {
     for (const std::uint32_t number : *numbers) {
       if (number >= positions_.size()) fail(fmt::format("a block has no short number {}", number));
@@ -66,4 +66,4 @@ void TriangleStreamWriter::fail(const std::string& what, ErrorCode code) const {
   throw CannotWrite(name_, what, code);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

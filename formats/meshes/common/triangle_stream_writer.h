@@ -9,14 +9,14 @@
 #include "formats/meshes/common/stream_vertices.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What the formats have in common that repeat the corners with every triangle and number no
 /// vertices: blocks are checked here and their triangles passed on with coordinates, in the memory
 /// of the stream's border. Vertices of no triangle are not in such files.
 class TriangleStreamWriter : public MeshStreamWriter {
  public:
-  void write(MeshBlock&& block) final;
+  void write(MeshStreamBlock&& block) final;
   void finish(const MeshTotals& totals) final;
 
  protected:
@@ -35,8 +35,8 @@ class TriangleStreamWriter : public MeshStreamWriter {
                          ErrorCode code = ErrorCode::kInvalidArgument) const;
 
  private:
-  void take_positions(const MeshBlock& block);
-  void check_short_numbers(const MeshBlock& block) const;
+  void take_positions(const MeshStreamBlock& block);
+  void check_short_numbers(const MeshStreamBlock& block) const;
 
   MeshStreamHeader header_;
   std::string name_;
@@ -45,4 +45,4 @@ class TriangleStreamWriter : public MeshStreamWriter {
   std::uint64_t triangles_ = 0;        // written so far
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

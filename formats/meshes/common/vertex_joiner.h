@@ -6,7 +6,7 @@
 
 #include "formats/meshes/common/mesh.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Makes a mesh of triangles whose corners are given by their coordinates: equal corners become one
 /// vertex.
@@ -44,4 +44,4 @@ class VertexJoiner {
   std::unordered_map<WorldPoint, std::uint64_t, Hash> numbers_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

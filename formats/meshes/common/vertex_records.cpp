@@ -5,9 +5,9 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-VertexRecords::VertexRecords(const MeshHeader& header, AttributeLayout to, Check check)
+VertexRecords::VertexRecords(const MeshFileHeader& header, AttributeLayout to, Check check)
     : from_(header.attributes),
       to_(std::move(to)),
       check_(std::move(check)),
@@ -47,4 +47,4 @@ std::span<const std::byte> VertexRecords::with_upper_bits(std::span<const std::b
   return changed_;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

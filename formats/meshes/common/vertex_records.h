@@ -11,19 +11,19 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/points/attributes/record_conversion.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Makes of the records of vertices those that a format has.
 class VertexRecords {
  public:
-  /// Throws Error for records that the format does not hold, the first of which is of the vertex
+  /// Throws Failure for records that the format does not hold, the first of which is of the vertex
   /// of that number.
   using Check = std::function<void(std::span<const std::byte> records, std::uint64_t first)>;
 
   /// `to` has attributes of `header`, in types that hold their numbers, or colours of 8 bits
   /// instead of 16: these are the numbers themselves if the header says that they are bytes, else
   /// their upper 8 bits. No `check`: the format holds all records.
-  VertexRecords(const MeshHeader& header, AttributeLayout to, Check check = nullptr);
+  VertexRecords(const MeshFileHeader& header, AttributeLayout to, Check check = nullptr);
 
   /// What the format has.
   [[nodiscard]] const AttributeLayout& layout() const { return to_; }
@@ -46,4 +46,4 @@ class VertexRecords {
   std::vector<std::byte> converted_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

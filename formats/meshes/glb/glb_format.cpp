@@ -5,7 +5,7 @@
 #include "formats/meshes/glb/glb_reader.h"
 #include "formats/meshes/glb/glb_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"glb"};
@@ -22,9 +22,9 @@ constinit const MeshFormat kGlbMesh = {
     .recognises = [](std::string_view text) { return text.starts_with(glb::kMagic); },
     .read = read_glb,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_glb_writer(std::move(files.main), header);
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

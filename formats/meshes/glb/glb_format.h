@@ -8,7 +8,7 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const MeshFormat kGlbMesh;
 
@@ -33,4 +33,4 @@ inline constexpr int kTriangles = 4;
 inline constexpr const char* kGenerator = "Spillway";
 
 }  // namespace glb
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -20,7 +20,7 @@
 #include "formats/meshes/glb/glb_scene.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using Json = nlohmann::json;
@@ -153,7 +153,7 @@ class GlbReader {
   [[nodiscard]] std::vector<glb::NodeMesh> meshes_of_scene() const {
     try {
       return glb::node_meshes(gltf_);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       fail(error.what());
     }
   }
@@ -318,4 +318,4 @@ class GlbReader {
 
 Mesh read_glb(InputBytes& source) { return GlbReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::glb {
+namespace spillway::formats::glb {
 namespace {
 
 using Json = nlohmann::json;
@@ -30,7 +30,7 @@ template <std::size_t N>
 std::array<double, N> numbers(const Json& node, const char* name, std::array<double, N> absent) {
   const auto found = node.find(name);
   if (found == node.end()) return absent;
-  if (found->size() != N) throw Error(fmt::format("a node's {} needs {} numbers", name, N));
+  if (found->size() != N) throw Failure(fmt::format("a node's {} needs {} numbers", name, N));
   return found->template get<std::array<double, N>>();
 }
 
@@ -91,7 +91,7 @@ std::vector<NodeMesh> node_meshes(const Json& gltf) {
     const auto [number, outer] = waiting.back();
     waiting.pop_back();
     const Json& node = nodes.at(number);
-    if (seen[number]) throw Error(fmt::format("node {} has two parents", number));
+    if (seen[number]) throw Failure(fmt::format("node {} has two parents", number));
     seen[number] = true;
     const Transform transform = combined(outer, transform_of(node));
     if (node.contains("mesh")) result.push_back({node.at("mesh").get<std::size_t>(), transform});
@@ -100,4 +100,4 @@ std::vector<NodeMesh> node_meshes(const Json& gltf) {
   return result;
 }
 
-}  // namespace spillway::detail::glb
+}  // namespace spillway::formats::glb

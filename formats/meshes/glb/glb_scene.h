@@ -8,7 +8,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail::glb {
+namespace spillway::formats::glb {
 
 /// An affine map: three rows of four.
 using Transform = std::array<std::array<double, 4>, 3>;
@@ -22,8 +22,8 @@ struct NodeMesh {
   Transform transform{};
 };
 
-/// The meshes of the default scene, in the order of its nodes. Throws Error without the file's name
+/// The meshes of the default scene, in the order of its nodes. Throws Failure without the file's name
 /// if the nodes make no tree, and nlohmann::json::exception for what is not as glTF has it.
 std::vector<NodeMesh> node_meshes(const nlohmann::json& gltf);
 
-}  // namespace spillway::detail::glb
+}  // namespace spillway::formats::glb

@@ -18,7 +18,7 @@
 #include "formats/meshes/common/local_origin.h"
 #include "formats/meshes/glb/glb_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using Position = std::array<float, 3>;
@@ -29,7 +29,7 @@ constexpr std::size_t kRoomForNumbers = 9 * 28;
 
 class GlbWriter : public CheckedMeshWriter {
  public:
-  GlbWriter(std::unique_ptr<OutputFile> file, const MeshHeader& mesh)
+  GlbWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& mesh)
       : CheckedMeshWriter(mesh, file->name()),
         output_(std::move(file)),
         colour_(colour_fields(mesh.attributes)),
@@ -51,7 +51,8 @@ class GlbWriter : public CheckedMeshWriter {
 
  private:
   /// The type of the colour's numbers in the file.
-  static NumberType channel_of(const MeshHeader& mesh, const std::optional<ColourFields>& colour) {
+  static NumberType channel_of(const MeshFileHeader& mesh,
+                               const std::optional<ColourFields>& colour) {
     const bool is_wide = colour && colour->front().attribute.type == NumberType::kUint16;
     return is_wide && !mesh.colours_are_bytes ? NumberType::kUint16 : NumberType::kUint8;
   }
@@ -232,8 +233,8 @@ class GlbWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_glb_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header) {
+                                            const MeshFileHeader& header) {
   return std::make_unique<GlbWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/meshes/landxml/landxml_reader.h"
 #include "formats/meshes/landxml/landxml_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"landxml", "xml"};
@@ -21,9 +21,9 @@ constinit const MeshFormat kLandXmlMesh = {
     .recognises = [](std::string_view text) { return text.find("<LandXML") != text.npos; },
     .read = read_landxml,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_landxml_writer(std::move(files.main), header);
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -1,7 +1,9 @@
 #pragma once
+
+#include "src/rooms.h"
 // What writer and reader of LandXML agree on: see docs/formats-meshes.md ("LandXML").
 
-namespace spillway::detail::landxml {
+namespace spillway::formats::landxml {
 
 inline constexpr const char* kEpsgCode = "epsgCode";
 inline constexpr const char* kWkt = "ogcWktCode";
@@ -9,4 +11,4 @@ inline constexpr const char* kWkt = "ogcWktCode";
 inline constexpr const char* kNotes = "Spillway";
 inline constexpr const char* kNote = "note";
 
-}  // namespace spillway::detail::landxml
+}  // namespace spillway::formats::landxml

@@ -16,7 +16,7 @@
 #include "formats/meshes/landxml/landxml_names.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Goes through the tags of a file of any size, a window of which is in memory.
@@ -24,7 +24,7 @@ class XmlTags {
  public:
   explicit XmlTags(InputBytes& source) : source_(source) {}
 
-  /// Goes to the next tag; false at the end. Throws Error for what is no XML.
+  /// Goes to the next tag; false at the end. Throws Failure for what is no XML.
   bool next(XmlTag& tag) {
     while (true) {
       const std::size_t before = scanner_.position();
@@ -183,4 +183,4 @@ class LandXmlReader {
 
 Mesh read_landxml(InputBytes& source) { return LandXmlReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -16,7 +16,7 @@
 #include "formats/meshes/common/mesh_text.h"
 #include "formats/meshes/landxml/landxml_names.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr double kFoot = 0.3048;
@@ -55,7 +55,7 @@ std::string coordinate_system(const std::string& crs) {
 
 class LandXmlWriter : public CheckedMeshWriter {
  public:
-  LandXmlWriter(std::unique_ptr<OutputFile> file, const MeshHeader& mesh)
+  LandXmlWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& mesh)
       : CheckedMeshWriter(mesh, file->name()), output_(std::move(file)) {
     // The date is demanded, but equal meshes shall give equal files.
     output_.append(
@@ -95,7 +95,7 @@ class LandXmlWriter : public CheckedMeshWriter {
     begin_faces();
     output_.append("</Faces>\n      </Definition>\n");
     output_.append(fmt::format("      <Feature name=\"{}\">\n", landxml::kNotes));
-    MeshHeader notes = header();
+    MeshFileHeader notes = header();
     notes.crs.clear();
     for (const std::string& note : mesh_notes(notes)) {
       output_.append(
@@ -117,8 +117,8 @@ class LandXmlWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_landxml_writer(std::unique_ptr<OutputFile> file,
-                                                const MeshHeader& header) {
+                                                const MeshFileHeader& header) {
   return std::make_unique<LandXmlWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/points/npy/npy_header.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"npy"};
@@ -83,4 +83,4 @@ constinit const MeshFormat kNpyMesh = {
     .file_set = &kFileSet,
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

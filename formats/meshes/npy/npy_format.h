@@ -2,9 +2,9 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A mesh as arrays side by side.
 extern const MeshFormat kNpyMesh;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -14,7 +14,7 @@
 #include "formats/points/npy/npy_layout.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtension = ".npy";
@@ -133,7 +133,7 @@ class ArrayInput {
     throw BadInput(source_.name(), what, place);
   }
 
-  /// Throws Error about the row that is being read.
+  /// Throws Failure about the row that is being read.
   [[noreturn]] void fail_at_row(const std::string& what) const {
     const std::uint64_t byte = data_begin_ + row_ * row_size_;
     fail(fmt::format("row {} at byte {}: {}", row_, byte, what), at_byte(byte));
@@ -303,4 +303,4 @@ Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
   return mesh;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

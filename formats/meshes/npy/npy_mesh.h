@@ -11,7 +11,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How the name of the file with a mesh's simplices ends.
 inline constexpr std::string_view kNpySimplices = "_simplices.npy";
@@ -34,15 +34,15 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
 /// Whether `path` is one of the files of a mesh whose vertices and simplices are both there.
 bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path);
 
-/// The names of the files that the mesh `path` is written to. Throws Error for standard output, and
+/// The names of the files that the mesh `path` is written to. Throws Failure for standard output, and
 /// if an input index or attributes of an earlier mesh would lie beside a mesh that has none.
 NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
                                const MeshContents& contents);
 
 /// Writes a mesh to `files`, which create_mesh_files() made.
-std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHeader& header);
+std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshFileHeader& header);
 
-/// Reads the mesh. Throws Error that names the file and the byte.
+/// Reads the mesh. Throws Failure that names the file and the byte.
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -15,7 +15,7 @@
 #include "formats/points/rows/row_encoder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// One array being written.
@@ -59,7 +59,7 @@ NpyHeader array_of_records(const AttributeLayout& layout, std::uint64_t count) {
 
 class NpyMeshWriter : public CheckedMeshWriter {
  public:
-  NpyMeshWriter(MeshFiles files, const MeshHeader& header)
+  NpyMeshWriter(MeshFiles files, const MeshFileHeader& header)
       : CheckedMeshWriter(header, files.main->name()),
         vertices_(std::move(files.main), array_of("<f8", {header.vertices, 3})),
         simplices_(std::move(files.simplices),
@@ -129,8 +129,8 @@ NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
   return names;
 }
 
-std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshHeader& header) {
+std::unique_ptr<MeshWriter> open_npy_mesh_writer(MeshFiles files, const MeshFileHeader& header) {
   return std::make_unique<NpyMeshWriter>(std::move(files), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

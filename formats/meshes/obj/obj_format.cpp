@@ -6,7 +6,7 @@
 #include "formats/meshes/obj/obj_reader.h"
 #include "formats/meshes/obj/obj_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"obj"};
@@ -23,9 +23,9 @@ constinit const MeshFormat kObjMesh = {
     .recognises = [](std::string_view text) { return begins_with_word(text, kFirstWords); },
     .read = read_obj,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_obj_writer(std::move(files.main), header);
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -13,7 +13,7 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class ObjReader {
@@ -121,4 +121,4 @@ class ObjReader {
 
 Mesh read_obj(InputBytes& source) { return ObjReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

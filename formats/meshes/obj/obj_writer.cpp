@@ -7,12 +7,12 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/common/mesh_text.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class ObjWriter : public CheckedMeshWriter {
  public:
-  ObjWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
+  ObjWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& header)
       : CheckedMeshWriter(header, file->name()), output_(std::move(file)) {
     for (const std::string& note : mesh_notes(header)) output_.append("# " + note + '\n');
   }
@@ -41,8 +41,8 @@ class ObjWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_obj_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header) {
+                                            const MeshFileHeader& header) {
   return std::make_unique<ObjWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,10 +6,10 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes triangles as OBJ, as docs/formats-meshes.md ("OBJ") describes it.
 std::unique_ptr<MeshWriter> open_obj_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header);
+                                            const MeshFileHeader& header);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/meshes/off/off_reader.h"
 #include "formats/meshes/off/off_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"off"};
@@ -20,9 +20,9 @@ constinit const MeshFormat kOffMesh = {
     .recognises = [](std::string_view text) { return off_kind_of_text(text).has_value(); },
     .read = read_off,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_off_writer(std::move(files.main), header);
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

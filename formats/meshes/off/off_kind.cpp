@@ -1,6 +1,6 @@
 #include "formats/meshes/off/off_kind.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::optional<OffKind> off_kind(std::string_view name) {
   const auto take = [&name](std::string_view part) {
@@ -22,4 +22,4 @@ std::optional<OffKind> off_kind_of_text(std::string_view first_bytes) {
   return off_kind(first_bytes.substr(0, first_bytes.find_first_of(" \t\r\n#")));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

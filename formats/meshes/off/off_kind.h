@@ -5,7 +5,9 @@
 #include <optional>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// A kind of OFF file.
 struct OffKind {
@@ -28,4 +30,4 @@ std::optional<OffKind> off_kind(std::string_view name);
 /// The kind that a file's first word names.
 std::optional<OffKind> off_kind_of_text(std::string_view first_bytes);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

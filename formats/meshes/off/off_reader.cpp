@@ -15,7 +15,7 @@
 #include "formats/meshes/off/off_kind.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // "0 0 0" and "3 0 1 2", each with the end of its line.
@@ -175,4 +175,4 @@ class OffReader {
 
 Mesh read_off(InputBytes& source) { return OffReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

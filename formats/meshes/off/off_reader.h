@@ -3,10 +3,10 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// Reads a text OFF file of triangles; colours of faces are passed over. Throws Error that names
+/// Reads a text OFF file of triangles; colours of faces are passed over. Throws Failure that names
 /// the line.
 Mesh read_off(InputBytes& source);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

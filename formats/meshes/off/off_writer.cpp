@@ -9,12 +9,12 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/common/mesh_text.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class OffWriter : public CheckedMeshWriter {
  public:
-  OffWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
+  OffWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& header)
       : CheckedMeshWriter(header, file->name()), output_(std::move(file)) {
     output_.append("OFF\n");
     for (const std::string& note : mesh_notes(header)) output_.append("# " + note + '\n');
@@ -46,8 +46,8 @@ class OffWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_off_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header) {
+                                            const MeshFileHeader& header) {
   return std::make_unique<OffWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

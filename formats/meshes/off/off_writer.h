@@ -6,10 +6,10 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes triangles as OFF, as docs/formats-meshes.md ("OFF") describes it.
 std::unique_ptr<MeshWriter> open_off_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header);
+                                            const MeshFileHeader& header);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

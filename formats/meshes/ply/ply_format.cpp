@@ -7,18 +7,18 @@
 #include "formats/meshes/ply/ply_writer.h"
 #include "formats/ply/ply_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"ply"};
 constexpr std::string_view kAsciiExtensions[] = {"ply-ascii"};
 
 constexpr MeshRecords kRecords = {
-    .header = [](const MeshHeader& header,
+    .header = [](const MeshFileHeader& header,
                  const std::string& name) { return ply_header_text(header, false, name); },
     .attributes = ply_vertex_records,
     .vertex_size =
-        [](const MeshHeader& header) {
+        [](const MeshFileHeader& header) {
           return ply_vertex_size(header.has_input_index ? 1 : 0) +
                  ply_vertex_layout(header.attributes).record_size();
         },
@@ -48,7 +48,7 @@ constinit const MeshFormat kPlyMesh = {
         [](InputBytes& source) { return peek_ply_header(source).simplices() != nullptr; },
     .read = read_ply,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_ply_writer(std::move(files.main), header, false);
         },
     .records = &kRecords,
@@ -66,9 +66,9 @@ constinit const MeshFormat kPlyAsciiMesh = {
     .takes_colour = true,
     .read = read_ply,
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_ply_writer(std::move(files.main), header, true);
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -15,7 +15,7 @@
 #include "formats/points/attributes/unique_names.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kInputIndex = "input_index";
@@ -269,4 +269,4 @@ class PlyReader {
 
 Mesh read_ply(InputBytes& source) { return PlyReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

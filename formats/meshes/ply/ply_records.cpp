@@ -11,7 +11,7 @@
 #include "formats/points/ply/ply_properties.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kMostInInt = std::uint64_t{1} << 31;
@@ -38,7 +38,7 @@ std::byte* put(std::byte* at, const T& value) {
 
 }  // namespace
 
-std::string ply_header_text(const MeshHeader& header, bool ascii, const std::string& name) {
+std::string ply_header_text(const MeshFileHeader& header, bool ascii, const std::string& name) {
   if (header.vertices > kMostInUint) {
     throw CannotWrite(
         name, fmt::format("PLY numbers at most {} vertices; choose vtu or npy", kMostInUint),
@@ -62,7 +62,7 @@ AttributeLayout ply_vertex_layout(const AttributeLayout& attributes) {
   return as_ply(with_byte_colours(attributes));
 }
 
-VertexRecords ply_vertex_records(const MeshHeader& header, const std::string& name) {
+VertexRecords ply_vertex_records(const MeshFileHeader& header, const std::string& name) {
   return {header, ply_vertex_layout(header.attributes),
           PlyIntegerCheck(header.attributes, "vertex", name)};
 }
@@ -89,4 +89,4 @@ std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners
   return at;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,21 +9,21 @@
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/vertex_records.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// The header, up to the first value. Throws Error that names the file `name` for more vertices
+/// The header, up to the first value. Throws Failure that names the file `name` for more vertices
 /// than PLY can number.
-std::string ply_header_text(const MeshHeader& header, bool ascii, const std::string& name);
+std::string ply_header_text(const MeshFileHeader& header, bool ascii, const std::string& name);
 
 /// The attributes that PLY has for those of vertices: colours of 8 bits, as other programs expect
 /// them.
 AttributeLayout ply_vertex_layout(const AttributeLayout& attributes);
 
-/// Makes their records. Throws Error that names the file `name` for an integer that PLY does not
+/// Makes their records. Throws Failure that names the file `name` for an integer that PLY does not
 /// hold.
-VertexRecords ply_vertex_records(const MeshHeader& header, const std::string& name);
+VertexRecords ply_vertex_records(const MeshFileHeader& header, const std::string& name);
 
-/// A number that goes with a vertex, as the double that PLY has for it. Throws Error that names the
+/// A number that goes with a vertex, as the double that PLY has for it. Throws Failure that names the
 /// file `name` if it is too large for that.
 double ply_index(std::uint64_t index, const std::string& name);
 
@@ -41,4 +41,4 @@ std::byte* put_ply_vertex(std::byte* at, const WorldPoint& vertex, std::span<con
                           std::span<const std::byte> record);
 std::byte* put_ply_simplex(std::byte* at, std::span<const std::uint64_t> corners);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,12 +10,12 @@
 #include "formats/meshes/common/mesh_text.h"
 #include "formats/meshes/ply/ply_records.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class PlyWriter : public CheckedMeshWriter {
  public:
-  PlyWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header, bool ascii)
+  PlyWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& header, bool ascii)
       : CheckedMeshWriter(header, file->name()),
         output_(std::move(file)),
         ascii_(ascii),
@@ -80,8 +80,8 @@ class PlyWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_ply_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header, bool ascii) {
+                                            const MeshFileHeader& header, bool ascii) {
   return std::make_unique<PlyWriter>(std::move(file), header, ascii);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/meshes/sma/sma_reader.h"
 #include "formats/meshes/sma/sma_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"sma"};
@@ -25,4 +25,4 @@ constinit const MeshFormat kSmaMesh = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

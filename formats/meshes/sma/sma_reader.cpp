@@ -16,7 +16,7 @@
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // A block ends when it has as many as this of anything.
@@ -27,7 +27,7 @@ constexpr std::uint32_t kImportedMark = std::uint32_t{1} << 31;
 
 /// The number that the lattice maps to `world`. If there is none, which is possible for a z that
 /// another program has changed, the one that is mapped closest, to a rounding error.
-double nearest_on_lattice(const Lattice& lattice, int axis, double world) {
+double nearest_on_lattice(const IntegerLattice& lattice, int axis, double world) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double guess = (world - lattice.offset[axis]) / lattice.scale[axis];
   double below = guess;
@@ -45,7 +45,7 @@ class SmaReader : public MeshStreamReader {
  public:
   explicit SmaReader(std::unique_ptr<InputBytes> source)
       : source_(std::move(source)), lines_(*source_) {
-    MeshHeader notes;
+    MeshFileHeader notes;
     while ((has_line_ = lines_.next(line_)) && !is_element(line_)) {
       read_header_line(notes);
       lines_.pass_over();
@@ -57,7 +57,7 @@ class SmaReader : public MeshStreamReader {
 
   [[nodiscard]] const MeshStreamHeader& header() const override { return header_; }
 
-  bool read(MeshBlock& block) override {
+  bool read(MeshStreamBlock& block) override {
     block.clear();
     first_ = totals_.vertices;
     gone_.clear();
@@ -95,7 +95,7 @@ class SmaReader : public MeshStreamReader {
     return keyword == "v" || keyword == "f" || keyword == "x";
   }
 
-  static bool is_full(const MeshBlock& block) {
+  static bool is_full(const MeshStreamBlock& block) {
     return block.vertices.size() >= kBlockSize || block.corners.size() >= 3 * kBlockSize ||
            block.finalized.size() >= 2 * kBlockSize;
   }
@@ -107,7 +107,7 @@ class SmaReader : public MeshStreamReader {
     return line;
   }
 
-  void read_header_line(MeshHeader& notes) {
+  void read_header_line(MeshFileHeader& notes) {
     const std::optional<std::string_view> comment = comment_of(line_);
     if (!comment) return check_blank();
     if (!read_mesh_note(*comment, notes)) {
@@ -137,7 +137,7 @@ class SmaReader : public MeshStreamReader {
     }
   }
 
-  void read_line(MeshBlock& block) {
+  void read_line(MeshStreamBlock& block) {
     Fields fields(line_);
     const std::string_view keyword = fields.word();
     if (keyword == "v") {
@@ -155,7 +155,7 @@ class SmaReader : public MeshStreamReader {
     }
   }
 
-  void read_vertex(Fields& fields, MeshBlock& block) {
+  void read_vertex(Fields& fields, MeshStreamBlock& block) {
     WorldPoint vertex;
     for (double& coordinate : vertex) {
       const std::optional<double> number = fields.number();
@@ -185,7 +185,7 @@ class SmaReader : public MeshStreamReader {
     return point;
   }
 
-  void read_triangle(Fields& fields, MeshBlock& block) {
+  void read_triangle(Fields& fields, MeshStreamBlock& block) {
     std::array<std::int64_t, 3> numbers;
     for (std::int64_t& number : numbers) number = read_number(fields);
     if (!fields.at_end()) fail("a face has more than three corners; only triangles are read");
@@ -208,7 +208,7 @@ class SmaReader : public MeshStreamReader {
 
   /// The short number, or the marked place among the imported ones, of the vertex with this number:
   /// from 1, or negative and counted back from the newest one.
-  std::uint32_t use(std::int64_t number, bool ends, MeshBlock& block) {
+  std::uint32_t use(std::int64_t number, bool ends, MeshStreamBlock& block) {
     const auto vertices = static_cast<std::int64_t>(totals_.vertices);
     if (number > vertices || number < -vertices) {
       fail(
@@ -239,7 +239,7 @@ class SmaReader : public MeshStreamReader {
   }
 
   /// Gives the imported vertices their short numbers and notes which vertices live on.
-  void close(MeshBlock& block) {
+  void close(MeshStreamBlock& block) {
     const auto vertices = static_cast<std::uint32_t>(block.vertices.size());
     for (std::vector<std::uint32_t>* const numbers : {&block.corners, &block.finalized}) {
       for (std::uint32_t& number : *numbers) {
@@ -268,7 +268,7 @@ class SmaReader : public MeshStreamReader {
   }
 
   struct Imported {
-    std::uint32_t place = 0;  // in MeshBlock::imported
+    std::uint32_t place = 0;  // in MeshStreamBlock::imported
     bool gone = false;
   };
 
@@ -306,4 +306,4 @@ std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputBytes> so
   return std::make_unique<SmaReader>(std::move(source));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

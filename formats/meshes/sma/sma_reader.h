@@ -6,7 +6,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The first line of an SMA file that Spillway wrote.
 inline constexpr std::string_view kSmaNote = "# spillway mesh stream";
@@ -19,4 +19,4 @@ bool looks_like_sma(std::string_view text);
 /// them. docs/formats-meshes.md ("SMA").
 std::unique_ptr<MeshStreamReader> open_sma_reader(std::unique_ptr<InputBytes> source);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -20,7 +20,7 @@
 #include "formats/state/state_writer.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Isenburg's reader takes lines of at most 511 bytes.
@@ -28,7 +28,7 @@ constexpr std::size_t kLongestCrsPart = 400;
 
 std::string header_text(const MeshStreamHeader& header) {
   std::string text = fmt::format("{}\n", kSmaNote);
-  MeshHeader notes;
+  MeshFileHeader notes;
   notes.lattice = header.lattice;
   notes.crs = header.crs;
   for (const std::string& note : mesh_notes(notes, kLongestCrsPart)) {
@@ -59,9 +59,9 @@ class SmaWriter : public MeshStreamWriter {
     put(header_text(header_));
   }
 
-  void absorb(MeshBlock& block) override { encode(block); }
+  void absorb(MeshStreamBlock& block) override { encode(block); }
 
-  void write(MeshBlock&& block) override {
+  void write(MeshStreamBlock&& block) override {
     if (!block.absorbed) encode(block);
     put(static_cast<const VertexLines&>(*block.absorbed).text());
     append_stream_numbers_checked(block);
@@ -95,7 +95,7 @@ class SmaWriter : public MeshStreamWriter {
   [[noreturn]] void fail(const std::string& what) const { throw CannotWrite(file_->name(), what); }
 
   /// Of the block alone.
-  void encode(MeshBlock& block) const {
+  void encode(MeshStreamBlock& block) const {
     fmt::memory_buffer text;
     for (const LatticePoint& in_block : block.vertices) {
       const WorldPoint vertex = in_world(header_.lattice, in_block);
@@ -111,7 +111,7 @@ class SmaWriter : public MeshStreamWriter {
   }
 
   /// Sets corners_.
-  void append_stream_numbers_checked(const MeshBlock& block) {
+  void append_stream_numbers_checked(const MeshStreamBlock& block) {
     const std::size_t numbers = block.vertices.size() + block.imported.size();
     const auto check = [&](std::uint64_t number, std::uint64_t end, const char* what) {
       if (number < end) return;
@@ -128,7 +128,7 @@ class SmaWriter : public MeshStreamWriter {
 
   /// A finalized vertex has a negative number where it comes last, or a line of its own if the
   /// block's triangles do not use it.
-  void put_triangles(const MeshBlock& block) {
+  void put_triangles(const MeshStreamBlock& block) {
     std::vector<bool> ends(block.vertices.size() + block.imported.size());
     for (const std::uint32_t number : block.finalized) ends[number] = true;
     relative_.assign(block.corners.size(), false);
@@ -184,4 +184,4 @@ std::unique_ptr<MeshStreamWriter> open_sma_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<SmaWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Bytes that are written at a time, of which fewer may count.
@@ -140,4 +140,4 @@ void append_counts(std::vector<std::byte>& out, std::span<const std::uint32_t> b
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 
 #include "formats/meshes/spm/simplex_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A number below kNarrow is a byte; below kFar its higher part is one, at least kNarrow, and its
 /// lower part stands in a second row of bytes; any other is kFarByte and stands apart.
@@ -73,4 +73,4 @@ class NumberRows {
 void append_counts(std::vector<std::byte>& out, std::span<const std::uint32_t> bounds,
                    NumberRows& rows);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

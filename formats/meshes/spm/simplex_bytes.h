@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How many simplices have a certain first corner, in half a byte; so many and more go on
 /// elsewhere.
@@ -45,4 +45,4 @@ class SimplexBytes {
   const FileSpot& where_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

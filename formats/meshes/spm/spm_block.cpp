@@ -13,7 +13,7 @@
 #include "formats/points/spp/spp_coordinates.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kCountsSize = 3 * sizeof(std::uint32_t);
@@ -26,7 +26,7 @@ bool is_integer_axis(const MeshStreamHeader& header, int axis) {
 const char* demand(bool integer) { return integer ? "an integer up to 2^53" : "finite"; }
 
 [[noreturn]] void fail_to_write(const std::string& what) {
-  throw Error(what, ErrorCode::kInvalidArgument);
+  throw Failure(what, ErrorCode::kInvalidArgument);
 }
 
 /// 0 if there is none. Compared with their highest bits turned, as the least that vectors can do
@@ -44,11 +44,11 @@ std::uint32_t largest_of(std::span<const std::uint32_t> numbers) {
   return static_cast<std::uint32_t>(largest) ^ kHighest;
 }
 
-SpmCounts counts_of(const MeshStreamHeader& header, const MeshBlock& block) {
+SpmCounts counts_of(const MeshStreamHeader& header, const MeshStreamBlock& block) {
   const std::size_t corners = header.dimension + 1;
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
   if (block.vertices.size() > kMost || block.corners.size() / corners > kMost) {
-    throw Error("a block is too large to write", ErrorCode::kTooLarge);
+    throw Failure("a block is too large to write", ErrorCode::kTooLarge);
   }
   if (block.corners.size() % corners != 0) {
     fail_to_write(fmt::format("a block has {} corners, which make no whole number of simplices",
@@ -125,7 +125,7 @@ void read_coordinates(ColumnReader& columns, const MeshStreamHeader& header, std
 }  // namespace
 
 SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader& header,
-                             const MeshBlock& block) {
+                             const MeshStreamBlock& block) {
   const SpmCounts counts = counts_of(header, block);
   const std::size_t begin = out.size();
   const std::size_t bits = begin + kCountsSize;
@@ -142,7 +142,7 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
 }
 
 SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
-                           const FileSpot& where, MeshBlock& block) {
+                           const FileSpot& where, MeshStreamBlock& block) {
   const auto fail = [&where](const char* what) {
     throw BadInput(where, fmt::format("{}; the file is corrupt, make it again", what));
   };
@@ -176,4 +176,4 @@ SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamH
   return counts;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How much is in a block.
 struct SpmCounts {
@@ -19,15 +19,15 @@ struct SpmCounts {
   std::uint32_t simplices = 0;
 };
 
-/// Appends all of a block but `imported`, and returns how much that is. Throws Error that says what
+/// Appends all of a block but `imported`, and returns how much that is. Throws Failure that says what
 /// is wrong with the block, without the file's name.
 SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader& header,
-                             const MeshBlock& block);
+                             const MeshStreamBlock& block);
 
 /// Replaces all members of `block` but `imported` by what append_spm_content() wrote; simplices and
 /// `finalized` are sorted. Coordinates are checked, and short numbers against those that the block
-/// says it has. Throws Error, beginning with `where`.
+/// says it has. Throws Failure, beginning with `where`.
 SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamHeader& header,
-                           const FileSpot& where, MeshBlock& block);
+                           const FileSpot& where, MeshStreamBlock& block);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include "formats/meshes/spm/spm_tetrahedra.h"
 #include "formats/meshes/spm/spm_triangles.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void append_corners(std::vector<std::byte>& out, int dimension, std::uint32_t numbers,
                     std::span<const std::uint32_t> corners) {
@@ -22,4 +22,4 @@ std::span<const std::byte> read_corners(std::span<const std::byte> bytes, int di
                         : read_tetrahedra(bytes, numbers, simplices, corners, where);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/meshes/spm/spm_format.h"
 #include "formats/points/spp/spp_attributes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename T>
@@ -64,11 +64,11 @@ void append_spm_imported(std::vector<std::byte>& out, std::span<const std::uint6
 }
 
 void append_spm_block(std::vector<std::byte>& out, const MeshStreamHeader& header,
-                      const MeshBlock& block) {
+                      const MeshStreamBlock& block) {
   if (!block.imported.empty()) append_spm_imported(out, block.imported);
   std::vector<std::byte> content;
   append_spm_content(content, header, block);
   append_block(out, kSpmMeshBlock, content);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The begin of a stream: magic and header.
 std::vector<std::byte> spm_head(const MeshStreamHeader& header);
@@ -20,9 +20,9 @@ std::vector<std::byte> spm_trailer(const MeshTotals& totals);
 /// Appends the stored block of imported vertices, of which there is at least one.
 void append_spm_imported(std::vector<std::byte>& out, std::span<const std::uint64_t> imported);
 
-/// Appends a mesh block, the block of its imported vertices before it. Throws Error that says what
+/// Appends a mesh block, the block of its imported vertices before it. Throws Failure that says what
 /// is wrong with the block, without a file's name.
 void append_spm_block(std::vector<std::byte>& out, const MeshStreamHeader& header,
-                      const MeshBlock& block);
+                      const MeshStreamBlock& block);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

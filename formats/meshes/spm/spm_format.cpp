@@ -5,7 +5,7 @@
 #include "formats/meshes/spm/spm_reader.h"
 #include "formats/meshes/spm/spm_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"spm"};
@@ -29,4 +29,4 @@ constinit const MeshFormat kSpmMesh = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const MeshFormat kSpmMesh;
 
@@ -27,4 +27,4 @@ inline constexpr std::uint32_t kSpmHasPoints = 2;
 inline constexpr std::uint32_t kSpmHasExtent = 4;
 inline constexpr std::uint32_t kSpmHasInputIndex = 8;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -14,7 +14,7 @@
 #include "formats/points/spp/spp_attributes.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class SpmReader : public MeshStreamReader {
@@ -34,7 +34,7 @@ class SpmReader : public MeshStreamReader {
 
   [[nodiscard]] const MeshStreamHeader& header() const override { return header_; }
 
-  bool read(MeshBlock& block) override {
+  bool read(MeshStreamBlock& block) override {
     block.clear();
     if (ended_) return false;
     std::uint32_t kind = stream_.next();
@@ -98,7 +98,7 @@ class SpmReader : public MeshStreamReader {
     }
   }
 
-  void parse_mesh(MeshBlock& block) {
+  void parse_mesh(MeshStreamBlock& block) {
     const SpmCounts counts = read_spm_content(stream_.content(), header_, stream_.where(), block);
     if (header_.lattice) {
       check_lattice(stream_.where(), *header_.lattice, box_around(block.vertices),
@@ -141,4 +141,4 @@ std::unique_ptr<MeshStreamReader> open_spm_reader(std::unique_ptr<InputBytes> so
   return std::make_unique<SpmReader>(std::move(source));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/meshes/spm/simplex_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Half a byte names another corner: 0 says that it comes new, k that it is the k-th last of the new
@@ -375,4 +375,4 @@ std::span<const std::byte> read_tetrahedra(std::span<const std::byte> bytes, std
   return TetrahedronReader(bytes, numbers, tetrahedra, where).read(corners);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// append_corners() of tetrahedra.
 void append_tetrahedra(std::vector<std::byte>& out, std::uint32_t numbers,
@@ -20,4 +20,4 @@ std::span<const std::byte> read_tetrahedra(std::span<const std::byte> bytes, std
                                            std::vector<std::uint32_t>& corners,
                                            const FileSpot& where);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

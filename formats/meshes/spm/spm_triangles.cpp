@@ -15,7 +15,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Fans of more triangles are not looked for: the search takes the square of their number.
@@ -456,4 +456,4 @@ std::span<const std::byte> read_triangles(std::span<const std::byte> bytes, std:
   return TriangleReader(bytes, numbers, triangles, where).read(corners);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -14,7 +14,7 @@
 #include "formats/state/state_writer.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename T>
@@ -37,9 +37,9 @@ class SpmWriter : public MeshStreamWriter {
     put(spm_head(header_));
   }
 
-  void absorb(MeshBlock& block) override { encode(block); }
+  void absorb(MeshStreamBlock& block) override { encode(block); }
 
-  void write(MeshBlock&& block) override {
+  void write(MeshStreamBlock&& block) override {
     if (!block.absorbed) encode(block);
     const auto& [counts, encoded] = static_cast<const EncodedBlock&>(*block.absorbed);
     if (counts.numbers > counts.vertices + block.imported.size()) {
@@ -80,14 +80,14 @@ class SpmWriter : public MeshStreamWriter {
   }
 
   /// Of the block alone.
-  void encode(MeshBlock& block) const {
+  void encode(MeshStreamBlock& block) const {
     std::vector<std::byte> content;
     content.reserve(24 * block.vertices.size() + 4 * block.corners.size() +
                     block.attributes.size());
     auto absorbed = std::make_shared<EncodedBlock>();
     try {
       absorbed->counts = append_spm_content(content, header_, block);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       fail(error.what(), error.code());
     }
     append_block(absorbed->encoded, kSpmMeshBlock, content);
@@ -135,4 +135,4 @@ std::unique_ptr<MeshStreamWriter> open_spm_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<SpmWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

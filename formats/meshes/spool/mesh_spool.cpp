@@ -12,7 +12,7 @@
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Bytes that are appended, then read; those that came last are in memory.
 class ByteSpool {
@@ -120,12 +120,12 @@ MeshSpool::MeshSpool(const MeshStreamHeader& header, const std::string& name,
 
 MeshSpool::~MeshSpool() = default;
 
-void MeshSpool::absorb(MeshBlock& block) {
+void MeshSpool::absorb(MeshStreamBlock& block) {
   colours_.add(block.attributes);
   encoder_->absorb(block);
 }
 
-void MeshSpool::write(MeshBlock&& block) {
+void MeshSpool::write(MeshStreamBlock&& block) {
   colours_.add(block.attributes);  // an absorbed block has none left
   encoder_->write(std::move(block));
 }
@@ -151,7 +151,7 @@ std::unique_ptr<MeshStreamReader> MeshSpool::open() const {
 }
 
 void MeshSpool::copy_to(MeshWriter& writer) const {
-  MeshBlock block;
+  MeshStreamBlock block;
   do {
     const std::unique_ptr<MeshStreamReader> for_vertices = open();
     while (for_vertices->read(block)) {
@@ -173,4 +173,4 @@ std::size_t MeshSpool::read(std::uint64_t offset, std::span<std::byte> bytes) co
   return store_->read(offset, bytes);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

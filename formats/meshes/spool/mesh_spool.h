@@ -11,7 +11,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 class ByteSpool;
 
@@ -29,8 +29,8 @@ class MeshSpool : public MeshStreamWriter {
   MeshSpool(const MeshSpool&) = delete;
   MeshSpool& operator=(const MeshSpool&) = delete;
 
-  void absorb(MeshBlock& block) override;
-  void write(MeshBlock&& block) override;
+  void absorb(MeshStreamBlock& block) override;
+  void write(MeshStreamBlock&& block) override;
   void finish(const MeshTotals& totals) override;
   [[nodiscard]] std::uint64_t bytes_written() const override;
   /// If `scratch` is a folder that is kept.
@@ -58,4 +58,4 @@ class MeshSpool : public MeshStreamWriter {
   std::unique_ptr<MeshStreamWriter> encoder_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,12 +9,12 @@
 #include "formats/meshes/spm/spm_format.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 const FileSpot kWhere{.file = "the temporary copy of the mesh"};
 
-[[noreturn]] void fail_at_end() { throw Error(kWhere.file + " ends early"); }
+[[noreturn]] void fail_at_end() { throw Failure(kWhere.file + " ends early"); }
 
 BlockHead head_at(const MeshSpool& spool, std::uint64_t offset) {
   std::array<std::byte, kBlockHeadSize> bytes;
@@ -76,4 +76,4 @@ std::uint64_t SpmSection::size() const {
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "formats/meshes/spool/mesh_spool.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The blocks of a finished spool, as they are stored in a stream in which n vertices come
 /// before: imported numbers are larger by n, all else is copied without a look at it.
@@ -30,4 +30,4 @@ class SpmSection {
   std::uint64_t offset_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/meshes/stl/stl_reader.h"
 #include "formats/meshes/stl/stl_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"stl"};
@@ -30,4 +30,4 @@ constinit const MeshFormat kStlMesh = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

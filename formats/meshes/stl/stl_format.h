@@ -6,7 +6,7 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const MeshFormat kStlMesh;
 
@@ -18,4 +18,4 @@ inline constexpr std::size_t kStlTriangle = 4 * 3 * 4 + 2;  ///< normal, corners
 /// coordinate system if there is room.
 inline constexpr std::string_view kStlOrigin = "spillway origin ";
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

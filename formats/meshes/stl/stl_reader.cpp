@@ -13,7 +13,7 @@
 #include "formats/meshes/stl/stl_format.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
@@ -209,4 +209,4 @@ Mesh read_stl(InputBytes& source) {
   return BinaryStlReader(source).read();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

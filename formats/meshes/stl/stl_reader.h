@@ -6,7 +6,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Whether a file that begins so is an ASCII STL.
 bool looks_like_ascii_stl(std::string_view text);
@@ -18,4 +18,4 @@ std::optional<WorldPoint> stl_origin(InputBytes& source);
 /// header names is added. Normals and attributes are passed over.
 Mesh read_stl(InputBytes& source);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -15,7 +15,7 @@
 #include "formats/meshes/common/triangle_stream_writer.h"
 #include "formats/meshes/stl/stl_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using Vector = std::array<double, 3>;
@@ -106,4 +106,4 @@ std::unique_ptr<MeshStreamWriter> open_stl_writer(std::unique_ptr<OutputFile> fi
   return std::make_unique<StlWriter>(std::move(file), header);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

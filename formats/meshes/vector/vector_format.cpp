@@ -3,7 +3,7 @@
 #include "formats/meshes/vector/vector_mesh.h"
 #include "formats/vectors/vector_formats.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // A GeoPackage is a SQLite database.
@@ -40,4 +40,4 @@ constinit const MeshFormat kShpMesh = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -13,7 +13,7 @@
 #include "formats/vectors/vector_file.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr const char* kNote = "SPILLWAY_LATTICE";
@@ -22,7 +22,7 @@ VectorLayerOptions layer_options(const std::string& path, const MeshStreamHeader
   VectorLayerOptions options;
   options.path = path;
   options.crs = header.crs;
-  MeshHeader notes;
+  MeshFileHeader notes;
   notes.lattice = header.lattice;
   if (header.lattice) options.metadata[kNote] = mesh_notes(notes).back();
   return options;
@@ -58,10 +58,10 @@ Mesh read_vector_mesh(const std::string& path) {
   Mesh mesh;
   mesh.header.crs = layer->crs();
   if (!read_mesh_note(layer->metadata(kNote), mesh.header)) {
-    throw Error(fmt::format("cannot read {}: the layer's metadata {} holds no lattice: three "
-                            "positive scales, three offsets",
-                            path, kNote),
-                ErrorCode::kBadInput, {.file = path});
+    throw Failure(fmt::format("cannot read {}: the layer's metadata {} holds no lattice: three "
+                              "positive scales, three offsets",
+                              path, kNote),
+                  ErrorCode::kBadInput, {.file = path});
   }
   VertexJoiner joiner(mesh);
   std::array<WorldPoint, 3> corners;
@@ -72,4 +72,4 @@ Mesh read_vector_mesh(const std::string& path) {
   return mesh;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

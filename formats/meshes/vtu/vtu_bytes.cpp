@@ -7,7 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kMostBlanks = std::uint64_t{16} << 20;
@@ -161,4 +161,4 @@ std::unique_ptr<VtuBytes> base64_vtu_bytes(BufferedInput& input) {
   return std::make_unique<Base64Bytes>(input);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,15 +10,15 @@
 
 #include "formats/bytes/buffered_input.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// Throws Error about what has just been read.
+/// Throws Failure about what has just been read.
 [[noreturn]] void fail_in_vtu(const BufferedInput& input, const std::string& what);
 
-/// Throws Error that says that the file ends too early.
+/// Throws Failure that says that the file ends too early.
 [[noreturn]] void fail_at_end_of_vtu(const BufferedInput& input);
 
-/// Passes over white space. Throws Error for more of it than a file has that comes to an end.
+/// Passes over white space. Throws Failure for more of it than a file has that comes to an end.
 void pass_over_blanks(BufferedInput& input);
 
 /// The bytes that a VTU file holds as they are or in base64.
@@ -30,7 +30,7 @@ class VtuBytes {
   VtuBytes(const VtuBytes&) = delete;
   VtuBytes& operator=(const VtuBytes&) = delete;
 
-  /// Puts the next bytes into `room`. Throws Error if there are fewer.
+  /// Puts the next bytes into `room`. Throws Failure if there are fewer.
   void read(std::span<std::byte> room);
 
   /// Says that what was encoded in one go ends here, and something else follows.
@@ -56,4 +56,4 @@ std::unique_ptr<VtuBytes> raw_vtu_bytes(BufferedInput& input);
 /// it is passed over.
 std::unique_ptr<VtuBytes> base64_vtu_bytes(BufferedInput& input);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

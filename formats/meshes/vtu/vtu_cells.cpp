@@ -11,7 +11,7 @@
 #include "formats/meshes/vtu/vtu_names.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kAny = 0;
@@ -143,4 +143,4 @@ void VtuCells::tell_left_out(Mesh& mesh) const {
                                                 fmt::join(words, ", ")));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "formats/meshes/common/mesh.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Values of which many that follow one another are equal.
 class ValueRuns {
@@ -48,7 +48,7 @@ class VtuCells {
 
   /// Puts the simplices into the mesh, whose vertices are all there, with its dimension and its
   /// notices of what was cut and left out. If there are neither tetrahedra nor faces, the mesh is
-  /// left as it is. As many ends as types must have been added. Throws Error with the file's name
+  /// left as it is. As many ends as types must have been added. Throws Failure with the file's name
   /// for cells that the corners do not make, and for polygons that cannot be cut.
   void put_into(Mesh& mesh, const std::string& file);
 
@@ -63,4 +63,4 @@ class VtuCells {
   std::uint64_t last_end_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

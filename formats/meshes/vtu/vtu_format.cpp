@@ -6,7 +6,7 @@
 #include "formats/meshes/vtu/vtu_reader.h"
 #include "formats/meshes/vtu/vtu_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"vtu"};
@@ -32,10 +32,10 @@ constinit const MeshFormat kVtuMesh = {
           return read_vtu(source);
         },
     .open_writer =
-        [](MeshFiles files, const MeshHeader& header) {
+        [](MeshFiles files, const MeshFileHeader& header) {
           return open_vtu_writer(std::move(files.main), header);
         },
     .part_index = &kIndex,
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,8 +2,8 @@
 
 #include "formats/meshes/common/mesh_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const MeshFormat kVtuMesh;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename Value>
@@ -97,4 +97,4 @@ std::uint64_t vtu_count(const VtuTags& tags, std::string_view key) {
   return *count;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 #include "formats/compression/block_decompress.h"
 #include "formats/meshes/vtu/vtu_tags.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How the binary arrays of a file are written: what its first tag says.
 struct VtuCoding {
@@ -33,10 +33,10 @@ struct VtuArray {
   std::uint64_t offset = 0;    ///< of appended ones: from the first byte of the appended data
 };
 
-/// What the tag VTKFile says. Throws Error for what is not read.
+/// What the tag VTKFile says. Throws Failure for what is not read.
 VtuCoding vtu_coding(const VtuTags& tags);
 
-/// What the tag DataArray says. Throws Error for what is malformed.
+/// What the tag DataArray says. Throws Failure for what is malformed.
 VtuArray vtu_array(const VtuTags& tags, std::string_view name);
 
 /// The name of a type of numbers: "UInt8", "Float64".
@@ -45,10 +45,10 @@ std::string_view vtu_type(NumberType type);
 /// Whether such a name is that of a type of numbers.
 bool is_vtu_type(std::string_view name);
 
-/// Whether the tag AppendedData promises base64, and not raw bytes. Throws Error for anything else.
+/// Whether the tag AppendedData promises base64, and not raw bytes. Throws Failure for anything else.
 bool is_appended_base64(const VtuTags& tags);
 
-/// A number in the tag. Throws Error if it is missing.
+/// A number in the tag. Throws Failure if it is missing.
 std::uint64_t vtu_count(const VtuTags& tags, std::string_view key);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/meshes/vtu/vtu_point_arrays.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kProbe = 1024;
@@ -51,4 +51,4 @@ void check_is_no_pvtu(InputBytes& source) {
                  {}, Remedy::kOneFile);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

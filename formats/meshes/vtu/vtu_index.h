@@ -7,12 +7,12 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The index of the parts of these names, of a mesh with this header.
 std::string pvtu_text(std::span<const std::string> names, const MeshStreamHeader& header);
 
-/// Throws Error if this is such an index.
+/// Throws Failure if this is such an index.
 void check_is_no_pvtu(InputBytes& source);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

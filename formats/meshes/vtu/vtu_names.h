@@ -4,7 +4,9 @@
 
 #include <cstdint>
 
-namespace spillway::detail::vtu {
+#include "src/rooms.h"
+
+namespace spillway::formats::vtu {
 
 // Field arrays.
 inline constexpr const char* kDimension = "spillway_dimension";
@@ -29,4 +31,4 @@ inline constexpr std::uint8_t kPolygon = 7;
 inline constexpr std::uint8_t kQuadrilateral = 9;
 inline constexpr std::uint8_t kTetrahedron = 10;
 
-}  // namespace spillway::detail::vtu
+}  // namespace spillway::formats::vtu

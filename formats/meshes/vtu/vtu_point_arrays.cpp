@@ -8,7 +8,7 @@
 #include "formats/points/attributes/unique_names.h"
 #include "formats/points/rows/row_encoder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// XML has no control characters.
@@ -35,4 +35,4 @@ std::vector<VtuPointArray> vtu_point_arrays(const AttributeLayout& layout) {
   return arrays;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// An array that goes with the points of a VTU file.
 struct VtuPointArray {
@@ -25,4 +25,4 @@ AttributeLayout vtu_point_layout(const AttributeLayout& attributes);
 /// array of points has.
 std::vector<VtuPointArray> vtu_point_arrays(const AttributeLayout& layout);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

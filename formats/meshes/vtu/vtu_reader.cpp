@@ -28,7 +28,7 @@
 #include "formats/points/attributes/unique_names.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// More numbers than a field array of Spillway has.
@@ -386,4 +386,4 @@ class VtuReader {
 
 Mesh read_vtu(InputBytes& source) { return VtuReader(source).read(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kLongestGap = std::uint64_t{16} << 20;
@@ -82,4 +82,4 @@ void VtuTags::fail(const std::string& what) const {
   throw BadInput::at(input_.name(), at_byte(begin_), what);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

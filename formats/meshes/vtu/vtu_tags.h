@@ -6,7 +6,7 @@
 #include "formats/bytes/buffered_input.h"
 #include "formats/bytes/xml_scanner.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Goes through the tags of a VTU file, of any size: one tag at a time is in memory. What stands
 /// between tags is left to the caller, or passed over.
@@ -15,7 +15,7 @@ class VtuTags {
   /// `input` must outlive it.
   explicit VtuTags(BufferedInput& input) : input_(input) {}
 
-  /// Goes to the next tag; false at the end of the file. Throws Error for what is no XML.
+  /// Goes to the next tag; false at the end of the file. Throws Failure for what is no XML.
   bool next();
 
   /// The tag that next() gave last. The input stands behind it.
@@ -24,14 +24,14 @@ class VtuTags {
   /// Says that the data of an array stand behind the tag, which may be long.
   void expect_data() { in_data_ = true; }
 
-  /// Throws Error that names the byte where that tag begins.
+  /// Throws Failure that names the byte where that tag begins.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
   bool find_bracket();
   void read_tag();
   void pass_over(std::string_view end);
-  /// The next character; throws Error at the end of the file.
+  /// The next character; throws Failure at the end of the file.
   char take();
 
   BufferedInput& input_;
@@ -41,4 +41,4 @@ class VtuTags {
   bool in_data_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

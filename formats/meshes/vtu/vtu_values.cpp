@@ -11,7 +11,7 @@
 #include "formats/bytes/line_reader.h"
 #include "formats/points/attributes/record_conversion.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kBuffer = std::size_t{1} << 16;  // a multiple of every number's size
@@ -26,7 +26,7 @@ std::uint64_t read_length(VtuBytes& bytes, const VtuCoding& coding) {
   return *load_index(coding.length_type, room.data(), coding.swaps);
 }
 
-/// Throws Error for bytes that the file cannot hold any more.
+/// Throws Failure for bytes that the file cannot hold any more.
 void check_room(const VtuBytes& bytes, std::uint64_t wanted, std::string_view what) {
   const std::optional<std::uint64_t> left = bytes.most_left();
   if (!left || wanted <= *left) return;
@@ -239,4 +239,4 @@ bool VtuValues::refill() {
   return end_ > 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

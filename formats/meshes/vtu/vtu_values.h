@@ -11,7 +11,7 @@
 #include "formats/meshes/vtu/vtu_bytes.h"
 #include "formats/meshes/vtu/vtu_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The content of one array of a VTU file, as bytes: whatever it was written in, decompressed.
 class VtuContent {
@@ -21,7 +21,7 @@ class VtuContent {
   VtuContent(const VtuContent&) = delete;
   VtuContent& operator=(const VtuContent&) = delete;
 
-  /// Puts the next bytes into `room`; fewer than that at the end only. Throws Error.
+  /// Puts the next bytes into `room`; fewer than that at the end only. Throws Failure.
   virtual std::size_t read(std::span<std::byte> room) = 0;
 
   /// Bytes of the whole, if the file is known to hold them.
@@ -32,13 +32,13 @@ class VtuContent {
 class VtuValues {
  public:
   /// Numbers of `array` in binary. `bytes`, which must outlive it, stand before its length. Throws
-  /// Error for lengths that cannot be.
+  /// Failure for lengths that cannot be.
   static VtuValues of_binary(VtuBytes& bytes, const VtuCoding& coding, const VtuArray& array);
 
   /// Numbers of `array` in text, up to the next tag. `input` must outlive it.
   static VtuValues of_text(BufferedInput& input, const VtuArray& array);
 
-  /// Goes to the next number; false at the end of the array. Throws Error.
+  /// Goes to the next number; false at the end of the array. Throws Failure.
   bool next() {
     at_ += size_of_one_;
     return at_ < end_ || refill();
@@ -73,4 +73,4 @@ class VtuValues {
   std::size_t end_ = 0;  // of what the buffer holds
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

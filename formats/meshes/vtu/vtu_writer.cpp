@@ -19,7 +19,7 @@
 #include "formats/meshes/vtu/vtu_names.h"
 #include "formats/meshes/vtu/vtu_point_arrays.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Declares the arrays of the appended data one after another: each is its length in bytes as
@@ -61,7 +61,7 @@ struct PointArray {
 
 class VtuWriter : public CheckedMeshWriter {
  public:
-  VtuWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header, std::size_t memory)
+  VtuWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& header, std::size_t memory)
       : CheckedMeshWriter(header, file->name()),
         output_(std::move(file)),
         memory_(memory),
@@ -288,8 +288,8 @@ class VtuWriter : public CheckedMeshWriter {
 }  // namespace
 
 std::unique_ptr<MeshWriter> open_vtu_writer(std::unique_ptr<OutputFile> file,
-                                            const MeshHeader& header, std::size_t memory) {
+                                            const MeshFileHeader& header, std::size_t memory) {
   return std::make_unique<VtuWriter>(std::move(file), header, memory);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

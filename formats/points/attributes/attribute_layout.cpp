@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 bool same_scale(const Attribute& a, const Attribute& b) {
@@ -108,4 +108,4 @@ AttributeLayout chosen(const AttributeLayout& layout, const AttributeChoice& cho
   return AttributeLayout(std::move(wanted));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 
 #include "formats/bytes/number_type.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Bytes that all numbers of an attribute take.
 inline std::size_t size_of(const Attribute& attribute) {
@@ -69,4 +69,4 @@ struct AttributeChoice {
 /// The part of a layout that is wanted.
 AttributeLayout chosen(const AttributeLayout& layout, const AttributeChoice& choice);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 struct OtherName {
@@ -68,4 +68,4 @@ std::string attribute_name(std::string_view name) {
   return std::string(found == kNames.end() ? name : found->name);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// The bits that a field's byte has of it, shifted to the lowest.
@@ -148,4 +148,4 @@ std::string range_text(const AttributeField& field) {
   });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The numbers of one attribute as another attribute has them.
 struct NumberConversion {
@@ -77,4 +77,4 @@ class RecordConversion {
 /// "5 to 31", "0": the numbers that a field of integers can be.
 std::string range_text(const AttributeField& field);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

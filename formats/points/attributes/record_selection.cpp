@@ -3,7 +3,7 @@
 #include <tuple>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 RecordSelection::RecordSelection(const AttributeLayout& all, const AttributeLayout& kept)
     : from_size_(all.record_size()),
@@ -18,4 +18,4 @@ void RecordSelection::apply(std::vector<std::byte>& records, std::size_t count) 
   records = std::move(kept);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/record_conversion.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Makes records with some of the attributes of records with more.
 class RecordSelection {
@@ -24,4 +24,4 @@ class RecordSelection {
   RecordConversion conversion_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

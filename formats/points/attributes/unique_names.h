@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Names of attributes that no other one has.
 class UniqueNames {
@@ -27,4 +29,4 @@ class UniqueNames {
   std::vector<std::string> taken_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

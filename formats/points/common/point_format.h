@@ -14,7 +14,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/common/point_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct LasVariant;
 
@@ -50,7 +50,7 @@ struct PointFormat {
   /// they do not tell.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
   /// Set instead where files that begin as this format may be meshes, too: whether a source is of
-  /// this format and holds points, by its header, which stays unread. Throws Error if the header is
+  /// this format and holds points, by its header, which stays unread. Throws Failure if the header is
   /// damaged.
   bool (*has_points)(InputBytes& source) = nullptr;
   std::unique_ptr<PointReader> (*open_reader)(PointInput input,
@@ -77,4 +77,4 @@ struct PointFormat {
 /// Some formats of points, in the order in which they are listed.
 using PointFormats = std::span<const PointFormat* const>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,16 +8,16 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void PointReader::decode(RawPoints& raw, PointBlock& block) const { std::swap(raw.decoded, block); }
 
 void PointReader::begin_piece(std::uint64_t piece) {
   const std::uint64_t count = pieces().value_or(0);
   if (piece >= count) {
-    throw Error(fmt::format("{}: there is no piece {} of {}; read it from front to back",
-                            header().name, piece, count),
-                ErrorCode::kInvalidArgument, {.file = header().name});
+    throw Failure(fmt::format("{}: there is no piece {} of {}; read it from front to back",
+                              header().name, piece, count),
+                  ErrorCode::kInvalidArgument, {.file = header().name});
   }
   go_to_piece(piece);
 }
@@ -44,4 +44,4 @@ bool PointReader::read(PointBlock& block) {
   return block.size() > 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -18,13 +18,13 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct LasMetadata;
 
 /// Points in input order. z is 0 where the input has none.
 struct PointBlock {
-  /// Lattice integers if the source has a lattice, else output coordinates.
+  /// IntegerLattice integers if the source has a lattice, else output coordinates.
   std::vector<LatticePoint> points;
   /// Each point's number in its source, counted from 0 over all records, dropped ones included; but
   /// see PointReader::begin_piece().
@@ -112,12 +112,12 @@ struct PointHeader {
   std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
   int point_format = -1;  ///< LAS point data record format, -1 for others
   int coordinates = 3;    ///< 2 if the points have no z
-  std::optional<std::uint64_t> count;  ///< records in the source, where known beforehand
-  std::optional<Lattice> lattice;      ///< set if the points come as integers
-  std::optional<Box<3>> extent;        ///< in output coordinates, where the header gives it
-  SharedText crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
-  std::string crs_note;                ///< why there is none, though the source tells of one; or
-                                       ///< what is not read of it; empty: neither
+  std::optional<std::uint64_t> count;     ///< records in the source, where known beforehand
+  std::optional<IntegerLattice> lattice;  ///< set if the points come as integers
+  std::optional<Box<3>> extent;           ///< in output coordinates, where the header gives it
+  SharedText crs;        ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  std::string crs_note;  ///< why there is none, though the source tells of one; or
+                         ///< what is not read of it; empty: neither
   /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if
   /// there is nothing of either.
   GeotiffKeys crs_keys;
@@ -171,7 +171,7 @@ class PointReader {
   virtual void carry(const AttributeLayout& /*layout*/) {}
 
   /// Fills `raw`, which comes cleared, with the next batch (some tens of thousands of points);
-  /// false at the end, of the piece if one was begun. Throws Error with the source's name and the
+  /// false at the end, of the piece if one was begun. Throws Failure with the source's name and the
   /// byte, line or point index for anything that is not a finite point.
   virtual bool fetch(RawPoints& raw) = 0;
 
@@ -192,7 +192,7 @@ class PointReader {
   /// From now on fetch() gives the points of this piece, counted from 0, and no others. All pieces
   /// in ascending order are what front to back is. Indices are as ever if header().count is known;
   /// else they are counted from the piece's beginning, and errors name bytes instead of lines.
-  /// Throws Error unless the piece is below pieces().
+  /// Throws Failure unless the piece is below pieces().
   void begin_piece(std::uint64_t piece);
 
   /// How far the input has been read, from 0 to 1, by the place of the last batch in it; nothing if
@@ -204,4 +204,4 @@ class PointReader {
   virtual void go_to_piece(std::uint64_t /*piece*/) {}
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void share(const WorkSharing& sharing, std::size_t count, const WorkSharing::Body& body) {
   if (sharing.run) {
@@ -26,4 +26,4 @@ void check_written(const OutputFile& file, std::optional<std::uint64_t> promised
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

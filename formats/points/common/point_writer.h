@@ -15,7 +15,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Work that several threads may share.
 struct WorkSharing {
@@ -37,9 +37,10 @@ struct PointWriterOptions {
   /// How many points will come, where known. The headers of LAS, LAZ, npy and PLY tell it, so on a
   /// pipe they need it, or `scratch`.
   std::optional<std::uint64_t> count{};
-  std::optional<Lattice> lattice{};  ///< set if the points come as integers; LAS and LAZ require it
-  std::optional<Box<3>> extent{};    ///< in output coordinates, where known; told by spp only
-  std::string crs{};                 ///< as in PointHeader; told by LAS, LAZ, COPC, PLY and spp
+  std::optional<IntegerLattice>
+      lattice{};                   ///< set if the points come as integers; LAS and LAZ require it
+  std::optional<Box<3>> extent{};  ///< in output coordinates, where known; told by spp only
+  std::string crs{};               ///< as in PointHeader; told by LAS, LAZ, COPC, PLY and spp
   /// `crs` as WKT where it is a code and the caller knows; without, LAS tells the code.
   std::string crs_wkt{};
   /// Points come region by region, as set_regions() tells; for formats that hold regions. Count and
@@ -77,12 +78,12 @@ class PointWriter {
   virtual void write(std::span<const LatticePoint> points,
                      std::span<const std::byte> attributes) = 0;
 
-  /// Completes the file. Throws Error if a number of points was promised and another came.
+  /// Completes the file. Throws Failure if a number of points was promised and another came.
   virtual void finish() = 0;
 };
 
-/// For writers: throws Error if `promised` is set and another number of points was written.
+/// For writers: throws Failure if `promised` is set and another number of points was written.
 void check_written(const OutputFile& file, std::optional<std::uint64_t> promised,
                    std::uint64_t written);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/points/copc/copc_writer.h"
 #include "formats/points/las/las_variant.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"copc.laz"};
@@ -37,4 +37,4 @@ constinit const PointFormat kCopcPoints = {
     .header_comes_last = [](const PointWriterOptions& /*options*/) { return true; },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/points/copc/node_key.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kEntrySize = HierarchyEntry::kSize;
@@ -213,4 +213,4 @@ std::vector<CopcNode> select_copc_nodes(InputBytes& source, const LasHeader& las
   return std::move(hierarchy).nodes();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/points/laz/chunk_table.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Which nodes are wanted.
 struct CopcSelection {
@@ -23,8 +23,8 @@ struct CopcNode {
 
 /// The nodes that are wanted and have points, in file order, in a file that can be read from any
 /// byte on (`source` is left somewhere). Reads the pages of the hierarchy that it needs. Throws
-/// Error for an octree that cannot be.
+/// Failure for an octree that cannot be.
 std::vector<CopcNode> select_copc_nodes(InputBytes& source, const LasHeader& las,
                                         const CopcSelection& selection);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

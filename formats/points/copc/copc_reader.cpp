@@ -7,7 +7,7 @@
 #include "formats/points/laz/laz_reader.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// All nodes, if they have all points. Whoever reads all of a file can do without an octree, so one
@@ -58,4 +58,4 @@ std::unique_ptr<PointReader> open_copc_reader(std::unique_ptr<InputBytes> source
                          LazChoice{std::move(chunks), std::move(regions)});
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

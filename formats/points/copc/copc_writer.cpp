@@ -24,7 +24,7 @@
 #include "formats/points/laz/chunk_table_bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kGpsTimeByte = 22;  // in records of the point formats from 6 on
@@ -86,7 +86,7 @@ class CopcWriter : public PointWriter {
         scratch_(options.scratch),
         memory_(checked_memory(options.memory)),
         finishing_(options.finishing),
-        lattice_(options.lattice.value_or(Lattice{})),
+        lattice_(options.lattice.value_or(IntegerLattice{})),
         content_(file_->name(), with_wkt(options, file_->name()), LasProfile::kCopc),
         laz_(laz_record_for(content_.target())),
         spool_(scratch_, content_.record_length(), 1,
@@ -178,7 +178,7 @@ class CopcWriter : public PointWriter {
   ScratchFolder* scratch_;
   std::size_t memory_;
   std::function<void(std::uint64_t points)> finishing_;
-  Lattice lattice_;
+  IntegerLattice lattice_;
   LasContent content_;
   LazRecord laz_;
   std::uint64_t pointer_at_ = 0;    // byte of the file
@@ -197,4 +197,4 @@ std::unique_ptr<PointWriter> open_copc_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<CopcWriter>(std::move(file), options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A node's place in the octree.
 struct NodeKey {
@@ -46,4 +46,4 @@ inline void store_entry(std::byte* bytes, const HierarchyEntry& entry) {
   store(bytes + 28, entry.count);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

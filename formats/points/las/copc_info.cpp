@@ -2,7 +2,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kInfoSize = 160;
@@ -34,4 +34,4 @@ std::vector<std::byte> copc_info_bytes(const CopcInfo& info) {
   return content;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 inline constexpr const char* kCopcUser = "copc";
 inline constexpr std::uint16_t kCopcInfoId = 1;
@@ -31,4 +33,4 @@ std::vector<std::byte> copc_info_bytes(const CopcInfo& info);
 /// Reads the content of that record; nothing if it is too short.
 std::optional<CopcInfo> parse_copc_info(std::span<const std::byte> content);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

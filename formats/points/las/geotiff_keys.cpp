@@ -12,7 +12,7 @@
 #include "formats/gdal/crs_text.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Keys, by their names in the standard.
@@ -150,7 +150,7 @@ std::optional<GeotiffCrs> defined(const GeotiffKeys& records, CrsKind kind) {
   try {
     std::string crs = gdal().crs_of_geotiff_keys(records, kind);
     if (!crs.empty()) return GeotiffCrs{std::move(crs), ""};
-  } catch (const Error&) {  // then they are not read
+  } catch (const Failure&) {  // then they are not read
   }
   return std::nullopt;
 }
@@ -159,7 +159,7 @@ std::optional<GeotiffCrs> defined(const GeotiffKeys& records, CrsKind kind) {
 std::optional<CrsKind> kind_by_gdal(std::uint16_t code) {
   try {
     return gdal().crs_kind(epsg(code));
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return std::nullopt;
   }
 }
@@ -203,7 +203,7 @@ std::optional<double> unit_of(std::uint16_t code) {
   if (is_metric(code)) return 1;
   try {
     return gdal().crs_unit(epsg(code));
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return std::nullopt;
   }
 }
@@ -374,4 +374,4 @@ std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind) {
   return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

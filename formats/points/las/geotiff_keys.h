@@ -12,7 +12,7 @@
 
 #include "formats/gdal/gdal.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Codes of EPSG are below it; as a value it means that other keys define the system.
 inline constexpr std::uint16_t kGeotiffUserDefined = 32767;
@@ -31,7 +31,7 @@ struct GeotiffCrs {
 GeotiffCrs read_geotiff_keys(const GeotiffKeys& keys);
 
 /// `crs`, which read_geotiff_keys() has found, with the system of heights that the keys tell, if
-/// GDAL makes one of them. Throws Error if GDAL is not there.
+/// GDAL makes one of them. Throws Failure if GDAL is not there.
 std::string whole_geotiff_crs(const std::string& crs, const GeotiffKeys& keys);
 
 /// A note: the text of a coordinate system is none; and what that means, if there is more to say.
@@ -45,4 +45,4 @@ std::optional<CrsKind> kind_of_epsg(std::uint16_t code);
 /// not CrsKind::kOther.
 std::vector<std::byte> geotiff_keys_of(std::uint16_t code, CrsKind kind);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

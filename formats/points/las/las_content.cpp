@@ -15,7 +15,7 @@
 #include "formats/points/las/records/vlr_bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr double kLeast = std::numeric_limits<std::int32_t>::min();
@@ -77,7 +77,7 @@ LasContent::LasContent(std::string file_name, const PointWriterOptions& options,
       vlrs_ = crs.bytes;
       vlr_count_ = crs.records;
       if (crs.wkt_bit) encoding_ |= kLasWktBit;
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       throw CannotWrite(file_name_, error.what(), error.code());
     }
   }
@@ -304,4 +304,4 @@ std::vector<std::byte> LasContent::header(std::uint64_t count, const Box<3>& bou
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

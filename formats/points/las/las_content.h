@@ -17,13 +17,13 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What LAS and LAZ that are written have in common: records of points, and the header that tells
 /// of them. docs/formats-points.md ("LAS, written").
 class LasContent {
  public:
-  /// `file_name` is for messages. Throws Error for what LAS cannot hold.
+  /// `file_name` is for messages. Throws Failure for what LAS cannot hold.
   LasContent(std::string file_name, const PointWriterOptions& options,
              LasProfile profile = LasProfile::kAny);
 
@@ -43,7 +43,7 @@ class LasContent {
   [[nodiscard]] std::vector<std::byte> head() const;
 
   /// Appends the records of these points, which come in the order of the file; attributes as in
-  /// PointWriter::write(). Throws Error for points that a record cannot hold.
+  /// PointWriter::write(). Throws Failure for points that a record cannot hold.
   void append_records(std::span<const LatticePoint> points, std::span<const std::byte> attributes,
                       std::vector<std::byte>& out);
 
@@ -81,7 +81,7 @@ class LasContent {
   AttributeLayout attributes_;
   RecordConversion packing_;
   std::vector<std::byte> first_record_;  // what a record has before attributes are put into it
-  Lattice lattice_;
+  IntegerLattice lattice_;
   LasMetadata las_;               // of the inputs, or nothing
   std::uint16_t encoding_ = 0;    // the global encoding
   std::vector<std::byte> first_;  // a variable length record
@@ -96,4 +96,4 @@ class LasContent {
   std::uint64_t waveforms_at_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

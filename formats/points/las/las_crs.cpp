@@ -15,7 +15,7 @@
 #include "formats/points/las/las_header.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// A coordinate system as GeoTIFF keys tell it.
@@ -101,7 +101,7 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
   if (!wkt.empty()) return code_of_wkt(wkt);
   const std::optional<CrsKind> kind = kind_of_epsg(*number);
   if (!kind || kind == CrsKind::kOther || kind == CrsKind::kUnknown) {
-    throw Error(
+    throw Failure(
         fmt::format(
             "GDAL cannot say whether {} is projected or geographic, which LAS has to tell: its "
             "module is not installed or does not know the code; write spp",
@@ -113,9 +113,10 @@ std::optional<Code> code_of(const std::string& crs, const std::string& wkt) {
 
 void append_record(LasCrs& crs, std::uint16_t id, std::span<const std::byte> content) {
   if (content.size() > std::numeric_limits<std::uint16_t>::max()) {
-    throw Error(fmt::format("the coordinate system takes {} bytes, and LAS holds 65535; write spp",
-                            content.size()),
-                ErrorCode::kInvalidArgument);
+    throw Failure(
+        fmt::format("the coordinate system takes {} bytes, and LAS holds 65535; write spp",
+                    content.size()),
+        ErrorCode::kInvalidArgument);
   }
   std::array<std::byte, kLasVlrHeaderSize> header{};
   std::ranges::copy(as_bytes_of(kLasCrsUser), header.begin() + 2);
@@ -138,10 +139,10 @@ LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
   const std::string& best_wkt = is_wkt(crs) ? crs : wkt;
   const std::optional<Code> code = code_of(crs, wkt);
   if (best_wkt.empty() && !code) {
-    throw Error(fmt::format("LAS cannot hold the coordinate system \"{}\": it is neither WKT nor "
-                            "an EPSG code; write spp",
-                            crs),
-                ErrorCode::kInvalidArgument);
+    throw Failure(fmt::format("LAS cannot hold the coordinate system \"{}\": it is neither WKT nor "
+                              "an EPSG code; write spp",
+                              crs),
+                  ErrorCode::kInvalidArgument);
   }
   const bool use_keys = code && (!version14 || best_wkt.empty());
   if (use_keys) {
@@ -152,4 +153,4 @@ LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14) {
   return result;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

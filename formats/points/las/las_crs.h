@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Bit of the global encoding: the coordinate system is WKT.
 inline constexpr std::uint16_t kLasWktBit = 0x10;
@@ -20,7 +22,7 @@ struct LasCrs {
 
 /// Puts a coordinate system (WKT or "EPSG:n"; "": none) into records. `wkt` is the same as WKT
 /// where the caller knows it. LAS 1.4 gets the WKT, 1.2 the GeoTIFF key of the EPSG code, and the
-/// WKT beside it if that is what `crs` is. Throws Error if LAS cannot hold it.
+/// WKT beside it if that is what `crs` is. Throws Failure if LAS cannot hold it.
 LasCrs las_crs(const std::string& crs, const std::string& wkt, bool version14);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

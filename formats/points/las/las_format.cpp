@@ -6,7 +6,7 @@
 #include "formats/points/las/las_variant.h"
 #include "formats/points/las/las_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"las"};
@@ -37,4 +37,4 @@ constinit const PointFormat kLasPoints = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

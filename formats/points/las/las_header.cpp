@@ -16,7 +16,7 @@
 #include "formats/points/las/uncompressed_points.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// The fields that only reading needs.
@@ -134,9 +134,9 @@ std::uint64_t point_count(const InputBytes& source, std::span<const std::byte> b
   return count;
 }
 
-Lattice read_lattice(const InputBytes& source, std::span<const std::byte> bytes) {
+IntegerLattice read_lattice(const InputBytes& source, std::span<const std::byte> bytes) {
   constexpr double kLargest = 2147483648.0;
-  Lattice lattice;
+  IntegerLattice lattice;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto scale = load<double>(&bytes[las_field::kScale + axis * sizeof(double)]);
     const auto offset = load<double>(&bytes[las_field::kOffset + axis * sizeof(double)]);
@@ -499,4 +499,4 @@ PointHeader las_point_header(const LasHeader& las, const std::string& path) {
   return header;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -20,7 +20,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Where the fields of the public header block lie.
 namespace las_field {
@@ -90,7 +90,7 @@ struct LasHeader {
   int point_format = 0;
   std::size_t record_length = 0;
   std::uint64_t count = 0;  ///< of point records
-  Lattice lattice;
+  IntegerLattice lattice;
   Box<3> extent;                       ///< empty if the header's bounds are not ordered
   std::string crs;                     ///< WKT, or "EPSG:n", or empty
   std::string crs_note;                ///< as PointHeader has it
@@ -117,11 +117,11 @@ struct LasHeaderOptions {
 };
 
 /// Reads everything before the first point, and after the points where the coordinate system is
-/// not told before, or metadata is wanted, and the source can go there. Throws Error, before
+/// not told before, or metadata is wanted, and the source can go there. Throws Failure, before
 /// anything is allocated, if a field contradicts another one or the size of the file.
 LasHeader read_las_header(InputBytes& source, const LasHeaderOptions& options = {});
 
 /// The same as any point source has it, for a source of that name.
 PointHeader las_point_header(const LasHeader& las, const std::string& path);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

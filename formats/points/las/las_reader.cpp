@@ -10,7 +10,7 @@
 #include "formats/points/las/uncompressed_points.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // A block of records stays within the processor's caches whatever the record length.
@@ -167,4 +167,4 @@ std::unique_ptr<PointReader> open_las_reader(std::unique_ptr<InputBytes> source,
   return std::make_unique<LasReader>(std::move(source), las, path, options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/las_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// One of the formats that begin as LAS.
 struct LasVariant {
@@ -19,4 +19,4 @@ struct LasVariant {
                                        const std::string& path, const PointReaderOptions& options);
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 
 #include "formats/points/las/las_content.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kBlockPoints = 8192;
@@ -53,4 +53,4 @@ std::unique_ptr<PointWriter> open_las_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<LasWriter>(std::move(file), options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/points/common/point_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Writes LAS: version 1.2 with point format 0, or 1.4 with point format 6, which counts more than
 /// 2^32 - 1 points and holds more classes, more returns and the overlap flag. Counts and bounds are
@@ -15,4 +15,4 @@ namespace spillway::detail {
 std::unique_ptr<PointWriter> open_las_writer(std::unique_ptr<OutputFile> file,
                                              const PointWriterOptions& options);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

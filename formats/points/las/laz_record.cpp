@@ -10,7 +10,7 @@
 #include "formats/points/las/las_header.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kRecordSize = 34;
@@ -171,4 +171,4 @@ std::size_t laz_layers(const LazChunkFormat& format) {
   return layers;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

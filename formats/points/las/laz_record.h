@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 inline constexpr const char* kLazUser = "laszip encoded";
 inline constexpr std::uint16_t kLazRecordId = 22204;
@@ -70,4 +70,4 @@ std::size_t laz_layers(const LazItem& item);
 /// Layers of a chunk of that format.
 std::size_t laz_layers(const LazChunkFormat& format);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

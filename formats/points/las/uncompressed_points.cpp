@@ -9,7 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Records that the file has room for from the first point on.
@@ -116,4 +116,4 @@ std::string place_of_count(const LasHeader& las) {
              : fmt::format("4 bytes from byte {} on", las_field::kLegacyCount);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

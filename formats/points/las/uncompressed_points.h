@@ -8,7 +8,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/points/las/las_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct PointSearch {
   bool salvage = false;  ///< the size of the file decides how many points there are
@@ -26,4 +26,4 @@ bool is_padding(std::span<const std::byte> bytes);
 /// The place of the number of points in the header, for messages.
 std::string place_of_count(const LasHeader& las);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

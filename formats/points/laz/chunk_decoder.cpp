@@ -6,7 +6,7 @@
 #include "formats/points/laz/layered_chunk.h"
 #include "formats/points/laz/pointwise_chunk.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 class LazChunkDecoder::Impl {
  public:
@@ -41,4 +41,4 @@ std::size_t LazChunkDecoder::end() {
   return std::visit([](auto& chunk) { return chunk.end(); }, impl_->chunk);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

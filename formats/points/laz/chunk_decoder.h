@@ -12,9 +12,9 @@
 #include "formats/points/laz/coding/laz_bytes.h"
 #include "formats/points/laz/laz_detail.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
-/// Decodes chunk after chunk, with memory that is used again. Throws Error, with a message that
+/// Decodes chunk after chunk, with memory that is used again. Throws Failure, with a message that
 /// names neither file nor chunk, for what cannot be the work of an encoder.
 class LazChunkDecoder {
  public:
@@ -45,4 +45,4 @@ class LazChunkDecoder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/points/laz/encoding/item_encoder.h"
 #include "formats/points/laz/encoding/layered_records.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 std::size_t record_length_of(const LazChunkFormat& format) {
@@ -140,4 +140,4 @@ void LazChunkEncoder::finish(std::vector<std::byte>& out) {
   std::visit([&](auto& chunk) { chunk.finish(out); }, impl_->chunk);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,12 +8,12 @@
 
 #include "formats/points/las/laz_record.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Encodes chunk after chunk, with memory that is used again.
 class LazChunkEncoder {
  public:
-  /// Pointwise items have version 2 (wave packets 1), layered ones 2 to 4. Throws Error for others.
+  /// Pointwise items have version 2 (wave packets 1), layered ones 2 to 4. Throws Failure for others.
   explicit LazChunkEncoder(const LazChunkFormat& format);
   ~LazChunkEncoder();
   LazChunkEncoder(LazChunkEncoder&&) noexcept;
@@ -32,4 +32,4 @@ class LazChunkEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 std::span<const std::byte> ChunkInput::take(std::size_t size, std::vector<std::byte>& gathered) {
   if (rest_.empty() && size > 0) next_span();
@@ -32,7 +32,7 @@ void ChunkInput::skip(std::uint64_t size) {
 
 void ChunkInput::next_span() {
   rest_ = bytes_->more();
-  if (rest_.empty()) throw Error("the compressed chunk ends too early");
+  if (rest_.empty()) throw Failure("the compressed chunk ends too early");
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -7,7 +7,7 @@
 
 #include "formats/points/laz/coding/laz_bytes.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Bytes of a chunk as they are needed, from spans of any size.
 class ChunkInput {
@@ -16,7 +16,7 @@ class ChunkInput {
   explicit ChunkInput(LazBytes& bytes) : bytes_(&bytes) {}
 
   /// The next `size` bytes in one span, valid until the next call of anything here: a part of a
-  /// span, or `gathered`, which grows only as bytes arrive. An Error if there are fewer.
+  /// span, or `gathered`, which grows only as bytes arrive. An Failure if there are fewer.
   std::span<const std::byte> take(std::size_t size, std::vector<std::byte>& gathered);
 
   void skip(std::uint64_t size);
@@ -31,4 +31,4 @@ class ChunkInput {
   std::span<const std::byte> rest_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

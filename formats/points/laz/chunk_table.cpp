@@ -13,7 +13,7 @@
 #include "formats/points/laz/file_bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Where the table lies, and where the file ends.
@@ -144,14 +144,14 @@ std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeade
       }
       if (chunk.bytes < least || chunk.bytes > range->offset - chunk.offset || chunk.count == 0 ||
           (!all && chunk.count > las.count - points)) {
-        throw Error(fmt::format("there can be no {} points in {} bytes from byte {} on",
-                                chunk.count, chunk.bytes, chunk.offset));
+        throw Failure(fmt::format("there can be no {} points in {} bytes from byte {} on",
+                                  chunk.count, chunk.bytes, chunk.offset));
       }
       table.push_back(chunk);
       chunk.offset += chunk.bytes;
       points += chunk.count;
     }
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     if (bytes.read_failed()) throw;
     fail(source, range->offset,
          fmt::format("the chunk table at byte {} is corrupt at chunk {}: {}; get a complete "
@@ -168,4 +168,4 @@ std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeade
   return LazChunkTable{std::move(table), more};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

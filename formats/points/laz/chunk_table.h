@@ -9,7 +9,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/points/las/las_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct LazChunk {
   std::uint64_t offset = 0;  ///< in the file
@@ -37,7 +37,7 @@ enum class LazChunksTaken {
 
 /// What the table lists, in a file that can be read from any byte on (`source` is left somewhere).
 /// Nothing if the table was never written.
-/// Throws Error for a table that is not that of a complete file, or, of all chunks, is damaged.
+/// Throws Failure for a table that is not that of a complete file, or, of all chunks, is damaged.
 std::optional<LazChunkTable> read_chunk_table(InputBytes& source, const LasHeader& las,
                                               LazChunksTaken taken = LazChunksTaken::kCounted);
 
@@ -48,4 +48,4 @@ std::optional<std::uint64_t> read_end_of_chunks(InputBytes& source, const LasHea
 /// Bytes of the shortest chunk: its first record and what every chunk has besides.
 std::size_t shortest_chunk(const LasHeader& las);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

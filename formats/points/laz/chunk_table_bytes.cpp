@@ -6,7 +6,7 @@
 #include "formats/points/laz/encoding/arithmetic_encoder.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::vector<std::byte> chunk_table_bytes(std::span<const LazChunk> chunks, bool with_counts) {
   constexpr std::uint32_t kVersion = 0;
@@ -30,4 +30,4 @@ std::vector<std::byte> chunk_table_bytes(std::span<const LazChunk> chunks, bool 
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::span<const std::byte> FileBytes::more() {
   if (put_back_ > 0) {
@@ -28,4 +28,4 @@ bool FileBytes::at_end() {
   return none;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

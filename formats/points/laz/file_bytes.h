@@ -8,7 +8,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/points/laz/coding/laz_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The bytes of a stream that is read front to back, in spans.
 class FileBytes : public LazBytes {
@@ -33,7 +33,7 @@ class FileBytes : public LazBytes {
   [[nodiscard]] std::uint64_t position() const { return source_.position() - put_back_; }
   /// Whether all bytes have been taken that there are, or may be.
   [[nodiscard]] bool at_end();
-  /// Whether an Error came from the source and not from what the bytes say.
+  /// Whether an Failure came from the source and not from what the bytes say.
   [[nodiscard]] bool read_failed() const { return reading_; }
 
  private:
@@ -46,4 +46,4 @@ class FileBytes : public LazBytes {
   bool reading_ = false;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/points/las/laz_record.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 LayeredChunk::LayeredChunk(const LazChunkFormat& format, LazDetail detail)
     : layer_count_(laz_layers(format)), wanted_layers_(laz_wanted_layers(format, detail)) {
@@ -22,7 +22,7 @@ void LayeredChunk::begin(LazBytes& bytes, std::uint64_t count) {
   const std::span<const std::byte> head = input_.take(sizes_at + 4 * layer_count_, head_);
   std::ranges::copy(head.first(record_.size()), record_.begin());
   if (load<std::uint32_t>(head.data() + record_.size()) != count) {
-    throw Error("the compressed chunk says another number of points than the file");
+    throw Failure("the compressed chunk says another number of points than the file");
   }
   sizes_.assign(std::max(wanted_layers_, Point14Layers::kLayers), 0);
   std::size_t wanted = 0;
@@ -79,4 +79,4 @@ std::size_t LayeredChunk::end() {
   return input_.rest().size();
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -11,7 +11,7 @@
 #include "formats/points/laz/coding/point14_layers.h"
 #include "formats/points/laz/coding/record_layers.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Chunks of the compressor 3: the first record as it is, the number of points, the sizes of all
 /// layers, the layers. Those after the wanted ones are skipped unseen.
@@ -38,4 +38,4 @@ class LayeredChunk {
   std::vector<std::byte> record_;       // the first one; with others_, the last one
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -2,7 +2,7 @@
 
 #include "formats/points/laz/coding/point14_layers.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::size_t laz_wanted_layers(const LazChunkFormat& format, LazDetail detail) {
   if (!format.layered) return 0;
@@ -17,4 +17,4 @@ std::size_t laz_wanted_layers(const LazChunkFormat& format, LazDetail detail) {
   return laz_layers(format);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,7 @@
 
 #include "formats/points/las/laz_record.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How much of each point is decoded; each level has what those before it have.
 enum class LazDetail {
@@ -17,4 +17,4 @@ enum class LazDetail {
 /// pointwise.
 std::size_t laz_wanted_layers(const LazChunkFormat& format, LazDetail detail);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/points/laz/laz_reader.h"
 #include "formats/points/laz/laz_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"laz"};
@@ -41,4 +41,4 @@ constinit const PointFormat kLazPoints = {
         },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,8 +2,8 @@
 
 #include "formats/points/common/point_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const PointFormat kLazPoints;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

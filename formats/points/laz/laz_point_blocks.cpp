@@ -8,7 +8,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 LazPointBlocks::LazPointBlocks(const LasHeader& las, bool keep_withheld)
     : format_(las.laz->format),
@@ -116,4 +116,4 @@ void LazPointBlocks::complete_with_records(const std::vector<std::byte>& records
   });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

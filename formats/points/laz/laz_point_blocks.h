@@ -13,7 +13,7 @@
 #include "formats/points/laz/chunk_decoder.h"
 #include "formats/points/laz/laz_detail.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Makes blocks of the points that chunk decoders give: with the attributes that are wanted, and
 /// without withheld points. Decodes no more of a point than that takes. But for carry(), safe for
@@ -65,4 +65,4 @@ class LazPointBlocks {
   mutable std::vector<std::unique_ptr<LazChunkDecoder>> idle_;  ///< guarded by idle_mutex_
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -18,7 +18,7 @@
 #include "formats/points/laz/salvaged_chunks.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // Larger chunks are decoded in order, so that memory does not depend on them.
@@ -98,7 +98,7 @@ class LazReader : public PointReader {
       decoder->begin(bytes, raw.count);
       decode_points(*decoder, raw.first, raw.count, block);
       check_end(decoder->end() == 0);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       if (!salvage_) fail_at(raw.offset, error);
       block.clear();
       block.lost = raw.count;
@@ -132,11 +132,11 @@ class LazReader : public PointReader {
     throw BadInput(source_->name(), what, place, Remedy::kSalvage);
   }
 
-  static std::string fault_at(std::uint64_t offset, const Error& error) {
+  static std::string fault_at(std::uint64_t offset, const Failure& error) {
     return fmt::format("the chunk at byte {}: {}", offset, error.what());
   }
 
-  [[noreturn]] void fail_at(std::uint64_t offset, const Error& error) const {
+  [[noreturn]] void fail_at(std::uint64_t offset, const Failure& error) const {
     fail(fault_at(offset, error) + "; get a complete copy", at_byte(offset));
   }
 
@@ -172,7 +172,7 @@ class LazReader : public PointReader {
   }
 
   static void check_end(bool at_end) {
-    if (!at_end) throw Error("its points end before it does");
+    if (!at_end) throw Failure("its points end before it does");
   }
 
   void keep_to_bounds(const PointReaderOptions& options) {
@@ -389,7 +389,7 @@ class LazReader : public PointReader {
     try {
       begin_in_order(chunk, bytes);
       while (left_ > 0) decode_in_order(dropped);
-    } catch (const Error&) {
+    } catch (const Failure&) {
       next_ = first;
       throw;
     }
@@ -500,7 +500,7 @@ class LazReader : public PointReader {
       left_ -= count;
       if (left_ == 0) end_in_order();
       blocks_.complete(first, count, parts, block);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       if (stream_.read_failed()) throw;
       if (!stream_.at_end()) whole = 0;
       next_ = first + whole;
@@ -526,7 +526,7 @@ class LazReader : public PointReader {
   void checked(Step&& step) const {
     try {
       step();
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       if (stream_.read_failed()) throw;
       fail_at(in_order_at_, error);
     }
@@ -573,4 +573,4 @@ std::unique_ptr<PointReader> open_laz_reader(std::unique_ptr<InputBytes> source,
   return std::make_unique<LazReader>(std::move(source), las, path, options, std::move(chosen));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 #include "formats/points/laz/chunk_table.h"
 #include "formats/points/laz/chunk_table_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// As in nearly all files.
@@ -126,4 +126,4 @@ std::unique_ptr<PointWriter> open_laz_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<LazWriter>(std::move(file), options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,12 +8,13 @@
 #include "formats/points/laz/coding/items_v2.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 template <Keep kKeep>
 std::unique_ptr<Point10Item> make_point(const LazItem& item) {
-  if (item.type != LazItemType::kPoint10) throw Error("the compressed record begins with no point");
+  if (item.type != LazItemType::kPoint10)
+    throw Failure("the compressed record begins with no point");
   if (item.version == 1) return std::make_unique<Point10V1<kKeep>>();
   return std::make_unique<Point10V2<kKeep>>();
 }
@@ -34,7 +35,7 @@ std::unique_ptr<PointwiseItem> make_item(const LazItem& item) {
       if (first_version) return std::make_unique<ByteV1<kKeep>>(item.size);
       return std::make_unique<ByteV2<kKeep>>(item.size);
     default:
-      throw Error("the compressed record has a part that does not belong there");
+      throw Failure("the compressed record has a part that does not belong there");
   }
 }
 
@@ -95,4 +96,4 @@ void PointwiseChunk::decode_records(std::span<std::byte> records) {
   }
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -10,7 +10,7 @@
 #include "formats/points/laz/coding/arithmetic_decoder.h"
 #include "formats/points/laz/coding/pointwise_item.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Chunks of the compressors 1 and 2: the first record as it is, then one stream for all others.
 class PointwiseChunk {
@@ -35,4 +35,4 @@ class PointwiseChunk {
   ArithmeticDecoder stream_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -8,7 +8,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// The chunk that begins at `offset` and tells what it has, if it is whole before `end`.
@@ -116,4 +116,4 @@ std::optional<std::uint64_t> plausible_end_of_chunks(InputBytes& source, const L
   return end && *end <= source.size().value() ? end : std::nullopt;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

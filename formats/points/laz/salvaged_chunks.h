@@ -10,7 +10,7 @@
 #include "formats/points/las/las_header.h"
 #include "formats/points/laz/chunk_table.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 struct SalvagedChunks {
   std::vector<LazChunk> chunks;
@@ -29,4 +29,4 @@ std::optional<SalvagedChunks> salvage_chunks(InputBytes& source, const LasHeader
 /// `source` is left at the first chunk.
 std::optional<std::uint64_t> plausible_end_of_chunks(InputBytes& source, const LasHeader& las);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

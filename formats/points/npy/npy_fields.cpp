@@ -2,7 +2,7 @@
 
 #include "formats/points/npy/npy_types.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void append_npy_fields(std::vector<NpyField>& fields, const AttributeLayout& attributes,
                        UniqueNames& names) {
@@ -13,4 +13,4 @@ void append_npy_fields(std::vector<NpyField>& fields, const AttributeLayout& att
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

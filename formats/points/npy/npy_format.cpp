@@ -6,7 +6,7 @@
 #include "formats/points/npy/npy_reader.h"
 #include "formats/points/npy/npy_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"npy"};
@@ -29,4 +29,4 @@ constinit const PointFormat kNpyPoints = {
     .header_comes_last = [](const PointWriterOptions& options) { return !options.count; },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/points/npy/npy_types.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kLongestDictionary = 65536;
@@ -274,4 +274,4 @@ std::string npy_header_bytes(const NpyHeader& header, const std::string& name) {
   return bytes + dictionary;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 
 #include "formats/bytes/input_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
@@ -32,13 +32,13 @@ struct NpyHeader {
   std::vector<std::uint64_t> shape;  ///< length of each dimension
 };
 
-/// Reads a header of version 1.0, 2.0 or 3.0, up to the first element. Throws Error that says what
+/// Reads a header of version 1.0, 2.0 or 3.0, up to the first element. Throws Failure that says what
 /// is wrong and at which byte.
 NpyHeader read_npy_header(InputBytes& source);
 
 /// A header of version 1.0, or of 3.0 if names are not ASCII, padded as NumPy does, so that
 /// elements begin at a multiple of 64 bytes. Its length does not depend on how long the array is.
-/// Throws Error that names the file `name` if the names of fields are too long.
+/// Throws Failure that names the file `name` if the names of fields are too long.
 std::string npy_header_bytes(const NpyHeader& header, const std::string& name);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/points/npy/npy_types.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kMostColumns = 4096;
@@ -140,4 +140,4 @@ NpyLayout npy_attributes(const NpyHeader& header, const std::string& name) {
   return layout_of_fields(header, name, false);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

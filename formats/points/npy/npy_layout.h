@@ -7,7 +7,7 @@
 #include "formats/points/npy/npy_header.h"
 #include "formats/points/rows/row_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// An array as points.
 struct NpyLayout {
@@ -17,10 +17,10 @@ struct NpyLayout {
 };
 
 /// What the header of the file `name` tells. Fields, or columns, that are no coordinates become
-/// attributes. Throws Error that says what would be points otherwise.
+/// attributes. Throws Failure that says what would be points otherwise.
 NpyLayout npy_layout(const NpyHeader& header, const std::string& name);
 
-/// Likewise of a structured array all fields of which are attributes. Throws Error for any other.
+/// Likewise of a structured array all fields of which are attributes. Throws Failure for any other.
 NpyLayout npy_attributes(const NpyHeader& header, const std::string& name);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 #include "formats/points/rows/row_reader.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Rows of an array in Fortran order, whose columns come one after the other.
@@ -78,4 +78,4 @@ std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputBytes> source,
   return open_row_reader(std::move(file));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

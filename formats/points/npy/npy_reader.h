@@ -6,7 +6,7 @@
 #include "formats/bytes/input_bytes.h"
 #include "formats/points/common/point_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Opens an npy array: n x 2 or n x 3 integers, float32 or float64 of either byte order, further
 /// columns being attributes; or n structures with fields x, y and maybe z, other fields being
@@ -15,4 +15,4 @@ namespace spillway::detail {
 std::unique_ptr<PointReader> open_npy_reader(std::unique_ptr<InputBytes> source,
                                              const std::string& path, bool skip_invalid = false);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

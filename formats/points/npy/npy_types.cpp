@@ -7,7 +7,7 @@
 
 #include "formats/bytes/fields.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 struct NamedType {
@@ -50,4 +50,4 @@ std::string npy_type(NumberType type) {
   return fmt::format("{}{}", size_of(type) == 1 ? '|' : '<', found->name);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

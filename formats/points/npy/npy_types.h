@@ -9,7 +9,7 @@
 
 #include "formats/bytes/number_type.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A number in a file.
 struct NpyNumber {
@@ -26,4 +26,4 @@ std::optional<std::uint64_t> npy_size(std::string_view type);
 /// The type of little-endian numbers.
 std::string npy_type(NumberType type);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

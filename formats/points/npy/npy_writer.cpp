@@ -11,7 +11,7 @@
 #include "formats/points/rows/row_encoder.h"
 #include "formats/points/rows/row_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::array<const char*, 3> kCoordinates = {"x", "y", "z"};
@@ -47,4 +47,4 @@ std::unique_ptr<PointWriter> open_npy_writer(std::unique_ptr<OutputFile> file,
   return open_row_writer(std::move(file), options, std::move(format));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

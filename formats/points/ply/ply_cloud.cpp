@@ -9,7 +9,7 @@
 #include "formats/bytes/notes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Bytes of all items in binary; nothing if they have lists, or are too many.
@@ -97,4 +97,4 @@ PlyCloud ply_cloud(PlyHeader header, const std::string& name) {
   return cloud;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

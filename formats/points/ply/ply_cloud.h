@@ -8,7 +8,7 @@
 #include "formats/ply/ply_header.h"
 #include "formats/points/rows/row_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A PLY file as points: those are its vertices.
 struct PlyCloud {
@@ -31,7 +31,7 @@ struct PlyCloud {
 };
 
 /// What the header of the file `name` tells. Scalar properties of vertices that are no coordinates
-/// become attributes. Throws Error for a mesh, and where there are no x and y.
+/// become attributes. Throws Failure for a mesh, and where there are no x and y.
 PlyCloud ply_cloud(PlyHeader header, const std::string& name);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/points/ply/ply_reader.h"
 #include "formats/points/ply/ply_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"ply"};
@@ -38,4 +38,4 @@ constinit const PointFormat kPlyPoints = {
     .header_comes_last = [](const PointWriterOptions& options) { return !options.count; },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

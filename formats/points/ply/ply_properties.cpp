@@ -10,7 +10,7 @@
 #include "formats/points/rows/row_encoder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr double kLargestExact = 0x1p53;
@@ -80,4 +80,4 @@ void PlyIntegerCheck::check(const Attribute& attribute, const std::byte* numbers
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

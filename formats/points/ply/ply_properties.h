@@ -10,7 +10,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/unique_names.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The attributes without scales and without integers of 64 bits, which PLY does not have.
 AttributeLayout as_ply(const AttributeLayout& layout);
@@ -26,7 +26,7 @@ class PlyIntegerCheck {
   PlyIntegerCheck(AttributeLayout layout, std::string item, std::string file)
       : layout_(std::move(layout)), item_(std::move(item)), file_(std::move(file)) {}
 
-  /// Throws Error for a number that is none. The first record has the number `first`.
+  /// Throws Failure for a number that is none. The first record has the number `first`.
   void operator()(std::span<const std::byte> records, std::uint64_t first) const;
 
  private:
@@ -37,4 +37,4 @@ class PlyIntegerCheck {
   std::string file_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/points/rows/row_reader.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Vertices that are read value by value: of text, or with lists in them.
@@ -113,4 +113,4 @@ std::unique_ptr<PointReader> open_ply_points(std::unique_ptr<InputBytes> source,
   return open_row_reader(std::move(file));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -12,7 +12,7 @@
 #include "formats/points/ply/ply_properties.h"
 #include "formats/points/rows/row_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::array<const char*, 3> kCoordinates = {"x", "y", "z"};
@@ -48,4 +48,4 @@ std::unique_ptr<PointWriter> open_ply_point_writer(std::unique_ptr<OutputFile> f
   return open_row_writer(std::move(file), options, std::move(format));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

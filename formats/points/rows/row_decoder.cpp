@@ -11,7 +11,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Integers beyond this are not all doubles.
@@ -144,4 +144,4 @@ void RowDecoder::fail_at_first_invalid(const std::byte* rows, std::uint64_t firs
       at_record(point));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/rows/row_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Makes points of rows.
 class RowDecoder {
@@ -27,7 +27,7 @@ class RowDecoder {
   void carry(const AttributeLayout& wanted);
 
   /// Replaces `block` by the points in `rows`, which are whole, the first of which has the number
-  /// `first`. The rows are of no use afterwards. Throws Error for a coordinate that is not finite,
+  /// `first`. The rows are of no use afterwards. Throws Failure for a coordinate that is not finite,
   /// or an integer that is no double. Safe for many threads at a time.
   void decode(std::span<std::byte> rows, std::uint64_t first, PointBlock& block) const;
 
@@ -48,4 +48,4 @@ class RowDecoder {
   std::size_t record_size_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

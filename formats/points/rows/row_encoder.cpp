@@ -3,7 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 AttributeLayout without_scales(const AttributeLayout& layout) {
   std::vector<Attribute> attributes = layout.attributes();
@@ -16,7 +16,7 @@ AttributeLayout without_scales(const AttributeLayout& layout) {
   return AttributeLayout(std::move(attributes));
 }
 
-RowEncoder::RowEncoder(const std::optional<Lattice>& lattice, int coordinates,
+RowEncoder::RowEncoder(const std::optional<IntegerLattice>& lattice, int coordinates,
                        const AttributeLayout& from, const AttributeLayout& to)
     : lattice_(lattice),
       coordinates_(coordinates),
@@ -40,4 +40,4 @@ std::span<const std::byte> RowEncoder::encode(std::span<const LatticePoint> poin
   return rows_;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

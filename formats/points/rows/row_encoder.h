@@ -12,7 +12,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What a format without scales has for attributes: doubles of what is meant where there is a
 /// scale, else the same numbers.
@@ -22,8 +22,8 @@ AttributeLayout without_scales(const AttributeLayout& layout);
 class RowEncoder {
  public:
   /// `to` has the attributes of `from`, in types that hold them.
-  RowEncoder(const std::optional<Lattice>& lattice, int coordinates, const AttributeLayout& from,
-             const AttributeLayout& to);
+  RowEncoder(const std::optional<IntegerLattice>& lattice, int coordinates,
+             const AttributeLayout& from, const AttributeLayout& to);
 
   /// Bytes of a row.
   [[nodiscard]] std::size_t row_size() const { return row_size_; }
@@ -33,7 +33,7 @@ class RowEncoder {
                                     std::span<const std::byte> records);
 
  private:
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   std::size_t coordinates_;
   std::size_t record_size_;
   std::size_t row_size_;
@@ -41,4 +41,4 @@ class RowEncoder {
   std::vector<std::byte> rows_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

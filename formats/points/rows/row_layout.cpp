@@ -5,7 +5,7 @@
 
 #include "formats/points/attributes/attribute_names.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 std::optional<int> coordinate_called(std::string_view name) {
   constexpr std::string_view kNames = "xyzXYZ";
@@ -52,4 +52,4 @@ void RowLayout::make_native(std::span<std::byte> rows) const {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

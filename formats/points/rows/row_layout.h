@@ -12,7 +12,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/unique_names.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The place of a coordinate in "xyz", in any case; nothing for other names.
 std::optional<int> coordinate_called(std::string_view name);
@@ -62,4 +62,4 @@ class RowLayout {
   UniqueNames names_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/points/rows/row_decoder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 // A block of rows stays within the processor's caches whatever the length of a row.
@@ -165,4 +165,4 @@ std::unique_ptr<PointReader> open_row_reader(RowFile file) {
   return std::make_unique<RowReader>(std::move(file));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

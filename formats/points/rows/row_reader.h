@@ -10,7 +10,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/rows/row_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Gives rows whose bytes do not just follow one another in the file.
 class RowSource {
@@ -19,7 +19,7 @@ class RowSource {
 
   /// Goes to that row, counted from 0. Called only where a file can be read in pieces.
   virtual void go_to(std::uint64_t row) = 0;
-  /// Fills `rows`, which has room for whole rows; fewer bytes if the file ends before. Throws Error
+  /// Fills `rows`, which has room for whole rows; fewer bytes if the file ends before. Throws Failure
   /// for what is no row.
   virtual std::size_t read(std::span<std::byte> rows) = 0;
   /// Makes sure that nothing is behind the last row that should not be.
@@ -40,7 +40,7 @@ struct RowFile {
   std::optional<std::uint64_t> behind = 0;
 };
 
-/// Reads points of such a file. Throws Error if its size is not that of all rows.
+/// Reads points of such a file. Throws Failure if its size is not that of all rows.
 std::unique_ptr<PointReader> open_row_reader(RowFile file);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/rows/row_encoder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 class RowWriter : public PointWriter {
@@ -56,4 +56,4 @@ std::unique_ptr<PointWriter> open_row_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<RowWriter>(std::move(file), options, std::move(format));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

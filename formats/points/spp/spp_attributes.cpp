@@ -9,7 +9,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/spp/spp_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Bytes of a block that are not its columns' numbers, at most.
@@ -138,4 +138,4 @@ bool read_attribute_columns(ColumnReader& columns, const AttributeLayout& layout
   return valid;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

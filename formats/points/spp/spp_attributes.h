@@ -9,7 +9,7 @@
 #include "formats/blocks/columns.h"
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// How many numbers all attributes of a point are.
 std::size_t numbers_of_point(const AttributeLayout& layout);
@@ -20,7 +20,7 @@ std::size_t spp_block_points(const AttributeLayout& layout);
 /// Appends the list to the content of the header.
 void append_attribute_list(std::vector<std::byte>& content, const AttributeLayout& layout);
 
-/// Takes the list off the front of the header. Throws Error of the stream for one that cannot be.
+/// Takes the list off the front of the header. Throws Failure of the stream for one that cannot be.
 AttributeLayout take_attribute_list(BlockStream& stream);
 
 /// Appends the columns of these records, one for each number of a point.
@@ -32,4 +32,4 @@ void append_attribute_columns(std::vector<std::byte>& content, const AttributeLa
 bool read_attribute_columns(ColumnReader& columns, const AttributeLayout& layout, std::size_t count,
                             std::vector<std::byte>& records);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

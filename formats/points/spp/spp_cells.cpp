@@ -11,7 +11,7 @@
 #include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void append_cells(std::vector<std::byte>& content, std::span<const PointRegion> cells,
                   int coordinates) {
@@ -132,4 +132,4 @@ void SppCells::expect_end() const {
                            cells_.size(), came_, cells_[current_].count));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,14 +9,14 @@
 #include "formats/blocks/block_stream.h"
 #include "formats/points/common/point_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Appends the content of a block of the table to `content`: at most kSppTableCells cells of points
 /// with 2 or 3 coordinates, boxes in the stream's coordinates.
 void append_cells(std::vector<std::byte>& content, std::span<const PointRegion> cells,
                   int coordinates);
 
-/// Follows the cells of a sorted stream while it is read. Whatever does not fit is an Error of the
+/// Follows the cells of a sorted stream while it is read. Whatever does not fit is an Failure of the
 /// stream that names the block's place.
 class SppCells {
  public:
@@ -62,4 +62,4 @@ class SppCells {
   std::uint64_t came_ = 0;      ///< of its points
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

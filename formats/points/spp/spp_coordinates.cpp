@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// From here on doubles have no digits behind the point; added to a number below, it takes these.
@@ -47,4 +47,4 @@ std::size_t first_invalid_coordinate(std::span<const double> values, bool on_lat
   return std::find_if_not(values.begin(), values.end(), valid) - values.begin();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -5,7 +5,7 @@
 #include "formats/points/spp/spp_reader.h"
 #include "formats/points/spp/spp_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"spp"};
@@ -30,4 +30,4 @@ constinit const PointFormat kSppPoints = {
            const PointWriterOptions& options) { return open_spp_writer(std::move(file), options); },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

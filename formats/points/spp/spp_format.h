@@ -8,7 +8,7 @@
 
 #include "formats/points/common/point_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 extern const PointFormat kSppPoints;
 
@@ -37,4 +37,4 @@ inline constexpr std::size_t kSppLargestBlock = std::size_t{2} << 20;
 inline constexpr std::size_t kSppTableCells = 16384;
 inline constexpr std::size_t kSppMostCells = std::size_t{1} << 20;
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

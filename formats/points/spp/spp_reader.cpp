@@ -16,7 +16,7 @@
 #include "formats/points/spp/spp_coordinates.h"
 #include "formats/points/spp/spp_format.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// What is known of each region takes memory all along, and each is read by itself. So where there
@@ -87,7 +87,7 @@ class SppReader : public PointReader {
         kSppHasLattice | kSppHasAttributes | (is_sorted ? 0 : kSppHasCount | kSppHasExtent);
     if ((flags & ~known) != 0) stream_.fail("unknown flags are set");
     if ((flags & kSppHasLattice) != 0) {
-      Lattice& lattice = header_.lattice.emplace();
+      IntegerLattice& lattice = header_.lattice.emplace();
       lattice.scale = stream_.take<std::array<double, 3>>();
       lattice.offset = stream_.take<std::array<double, 3>>();
       if (!all_finite(lattice.scale) || !all_finite(lattice.offset) ||
@@ -211,4 +211,4 @@ std::unique_ptr<PointReader> open_spp_reader(std::unique_ptr<InputBytes> source,
   return std::make_unique<SppReader>(std::move(source), path);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

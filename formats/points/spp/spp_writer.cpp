@@ -16,7 +16,7 @@
 #include "formats/points/spp/spp_format.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 template <typename T>
@@ -187,4 +187,4 @@ std::unique_ptr<PointWriter> open_spp_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<SppWriter>(std::move(file), options);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 
 #include "formats/bytes/line_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Kinds of coordinates, those that are chosen first standing first. x and y have four; each name
@@ -377,4 +377,4 @@ std::string listed(std::span<const std::string_view> names) {
   return list + (names.size() > kMost ? ", ..." : "");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// What the names of columns say of x, y and z.
 struct ColumnChoice {
@@ -38,4 +40,4 @@ std::string taken_columns(std::span<const std::string_view> names,
 /// The names in quotes, separated by commas; of many the first ones.
 std::string listed(std::span<const std::string_view> names);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 char sign_of(Separator separator) { return static_cast<char>(separator); }
@@ -115,4 +115,4 @@ bool CommentHeader::names_plane() const {
   return text_.find_first_of(":=") == text_.npos && names().choice.column[0] >= 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 #include "formats/points/text/column_names.h"
 #include "formats/points/text/text_columns.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// All separators, in the order in which they are looked for.
 inline constexpr std::array kSeparators = {Separator::kSemicolon, Separator::kTab,
@@ -66,4 +66,4 @@ class CommentHeader {
   std::uint64_t line_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/bytes/line_reader.h"
 #include "formats/points/attributes/attribute_names.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 TextAttributes::TextAttributes(const TextColumns& columns, std::string_view first_row,
                                const std::vector<std::string>& names)
@@ -78,4 +78,4 @@ std::string TextAttributes::fault(std::string_view row) const {
   return "";
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

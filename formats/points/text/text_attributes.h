@@ -8,7 +8,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/text/text_columns.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The columns of a text besides those of coordinates, as attributes: numbers of 64 bits.
 class TextAttributes {
@@ -55,4 +55,4 @@ class TextAttributes {
   std::size_t record_size_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -10,7 +10,7 @@
 
 #include "formats/bytes/line_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kLongestNumber = 128;
@@ -349,4 +349,4 @@ std::string TextColumns::fault_of_field(std::string_view field) const {
       quoted(field), name_of(separator_), decimal_commas_ ? "commas" : "points");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

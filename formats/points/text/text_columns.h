@@ -9,7 +9,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What separates the columns of a text, in all lines the same. Blanks may stand around the other
 /// signs, too; kBlanks are any blanks and tabs.
@@ -78,4 +78,4 @@ class TextColumns {
   std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -6,7 +6,7 @@
 #include "formats/points/text/text_reader.h"
 #include "formats/points/text/text_writer.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::string_view kExtensions[] = {"txt", "xyz", "csv", "asc"};
@@ -34,4 +34,4 @@ constinit const PointFormat kTextPoints = {
         [](std::string_view path) { return extension_of(std::string(path)) == "csv"; },
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

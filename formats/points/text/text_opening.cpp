@@ -12,7 +12,7 @@
 #include "formats/points/text/unnamed_columns.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Bytes of the first rows, which settle the decimal sign.
@@ -164,7 +164,7 @@ class Opening {
   }
 
   /// The columns by the last comment that names those of the first row, else by the row itself.
-  /// Throws Error if a comment names x, y or z in other columns than that reads, but not all
+  /// Throws Failure if a comment names x, y or z in other columns than that reads, but not all
   /// columns.
   TextColumns columns_of_row() {
     for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
@@ -216,7 +216,7 @@ class Opening {
     return columns;
   }
 
-  /// Throws Error if the last comment that lists columns has others than 1 to 3, which are to be
+  /// Throws Failure if the last comment that lists columns has others than 1 to 3, which are to be
   /// read as it does not fit a row of `columns` columns. Of sentences a notice will do.
   void check_comments(std::size_t columns) {
     if (comments_.empty()) return;
@@ -248,7 +248,7 @@ class Opening {
     return {layout.separator, layout.decimal_commas, columns_of(layout.count), layout.count, false};
   }
 
-  /// Throws Error if column 1 of a table without names may be the number of a point, or is none.
+  /// Throws Failure if column 1 of a table without names may be the number of a point, or is none.
   void check_first_column(const RowLayout& layout) {
     if (scan_points_ || at_end_) return;
     if (!layout.are_numbers) {
@@ -327,7 +327,7 @@ class Opening {
     });
   }
 
-  /// Throws Error if the commas of a first row without a header may be decimal commas, too.
+  /// Throws Failure if the commas of a first row without a header may be decimal commas, too.
   void check_commas(const std::vector<std::string_view>& fields) const {
     const auto numbers = static_cast<std::size_t>(
         std::find_if(fields.begin(), fields.end(),
@@ -447,4 +447,4 @@ std::optional<std::uint64_t> point_count_of_line(std::string_view line) {
   return parse_count(trimmed(line));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

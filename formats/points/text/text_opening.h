@@ -10,7 +10,7 @@
 #include "formats/bytes/line_reader.h"
 #include "formats/points/text/text_columns.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What the beginning of a text settles for all of it, as docs/formats-points.md ("Text") says.
 struct TextOpening {
@@ -34,7 +34,7 @@ struct TextRows {
   bool skip_invalid = false;  ///< rows that are no points are left out
 };
 
-/// Reads up to the first point. Throws Error that names `name` and the line for
+/// Reads up to the first point. Throws Failure that names `name` and the line for
 /// a header that does not say which columns are x and y, and for a first row whose columns cannot
 /// be told for sure.
 TextOpening read_text_opening(LineReader& lines, const std::string& name,
@@ -43,4 +43,4 @@ TextOpening read_text_opening(LineReader& lines, const std::string& name,
 /// The number of points that a line of PTS with nothing else tells; nothing for any other line.
 std::optional<std::uint64_t> point_count_of_line(std::string_view line);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

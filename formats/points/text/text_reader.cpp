@@ -14,7 +14,7 @@
 #include "formats/points/text/text_opening.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kBlockPoints = 65536;
@@ -116,7 +116,7 @@ class TextReader : public PointReader {
     scan_begin_ = next_;
   }
 
-  /// Throws Error if a scan of a PTS has not as many points as the line before it says.
+  /// Throws Failure if a scan of a PTS has not as many points as the line before it says.
   void check_scan() const {
     const std::uint64_t came = next_ - scan_begin_;
     if (!opening_.scan_points || *opening_.scan_points == came) return;
@@ -182,4 +182,4 @@ std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source
                                       piece_bytes);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

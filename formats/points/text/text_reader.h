@@ -8,7 +8,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/text/text_opening.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Bytes of the pieces that text is read in: some 65,536 lines.
 inline constexpr std::uint64_t kTextPiece = std::uint64_t{2} << 20;
@@ -23,4 +23,4 @@ std::unique_ptr<PointReader> open_text_reader(std::unique_ptr<InputBytes> source
                                               const TextRows& rows = {},
                                               std::uint64_t piece_bytes = kTextPiece);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

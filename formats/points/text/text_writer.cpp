@@ -11,7 +11,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kFlushAt = std::size_t{256} << 10;
@@ -163,7 +163,7 @@ class TextWriter : public PointWriter {
   }
 
   std::unique_ptr<OutputFile> file_;
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   std::array<std::optional<Decimal>, 3> decimal_;  // by axis
   std::optional<std::uint64_t> count_;
   std::uint64_t written_ = 0;
@@ -180,4 +180,4 @@ std::unique_ptr<PointWriter> open_text_writer(std::unique_ptr<OutputFile> file,
   return std::make_unique<TextWriter>(std::move(file), options, separator);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -9,7 +9,7 @@
 #include "formats/bytes/fields.h"
 #include "formats/bytes/line_reader.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kCoordinates = 3;
@@ -78,4 +78,4 @@ UnnamedColumns judge_unnamed_columns(std::span<const UnnamedRow> rows) {
   return {};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

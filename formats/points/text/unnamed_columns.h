@@ -8,7 +8,9 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// The beginning of a row that may be x, y, z and more, or a point's number and its coordinates.
 struct UnnamedRow {
@@ -26,4 +28,4 @@ struct UnnamedColumns {
 /// Judges by the first rows. Three columns, or less, are coordinates.
 UnnamedColumns judge_unnamed_columns(std::span<const UnnamedRow> rows);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Points are collinear if their projections along every axis are.
@@ -44,4 +44,4 @@ template std::vector<VertexId> affine_basis<3>(std::span<const Point<3>>);
 template bool is_independent<2>(std::span<const Point<2>>, const Point<2>&);
 template bool is_independent<3>(std::span<const Point<3>>, const Point<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -5,7 +5,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Places of affinely independent points, as many as there are (at most D+1): one less than their
 /// number is the dimension of all points' affine hull. Exact. Reads no further than it must.
@@ -16,4 +16,4 @@ std::vector<VertexId> affine_basis(std::span<const Point<D>> points);
 template <int D>
 bool is_independent(std::span<const Point<D>> basis, const Point<D>& p);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,9 +7,9 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
-#include "src/delaunay/kernel_common/kernel_arena.h"
+#include "src/delaunay/kernel_common/insertion_arena.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Of the largest array of a base case, more than a point usually takes in it.
@@ -17,14 +17,14 @@ template <int D>
 constexpr std::size_t kWorkingBytes = D == 2 ? 200 : 800;
 
 template <int D>
-std::vector<Duplicate> find_duplicates(const BaseCaseInput<D>& input) {
+std::vector<DroppedDuplicate> find_duplicates(const BaseCaseInput<D>& input) {
   std::vector<VertexId> order(input.points.size());
   std::iota(order.begin(), order.end(), VertexId{0});
   std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
     return input.points[a] != input.points[b] ? input.points[a] < input.points[b]
                                               : input.input_index[a] < input.input_index[b];
   });
-  std::vector<Duplicate> duplicates;
+  std::vector<DroppedDuplicate> duplicates;
   VertexId kept = 0;
   for (const VertexId i : order) {
     if (i == order.front() || input.points[i] != input.points[kept]) {
@@ -60,7 +60,7 @@ BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input) {
 }
 
 void release_base_case_memory() {
-  KernelArena::release_kept_memory();
+  InsertionArena::release_kept_memory();
   release_kept_slabs();
 }
 
@@ -74,4 +74,4 @@ template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
 template void release_base_case_memory_above<2>(std::size_t);
 template void release_base_case_memory_above<3>(std::size_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -5,7 +5,7 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/kernel_common/kernel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Triangulates any finite points: none, one, all equal, collinear, coplanar or in general
 /// position. The calling thread does so alone, but those of with_threads() that have nothing else
@@ -25,4 +25,4 @@ void release_base_case_memory();
 template <int D>
 void release_base_case_memory_above(std::size_t points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

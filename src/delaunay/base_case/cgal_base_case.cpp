@@ -1,9 +1,9 @@
 // The base case by CGAL's incremental Delaunay triangulations: the only file of the engine that
 // includes CGAL. What differs between 2D and 3D stands in CgalTraits.
 
-#include "src/delaunay/kernel_common/kernel_arena.h"
+#include "src/delaunay/kernel_common/insertion_arena.h"
 // CGAL's way to choose the allocator of its containers.
-#define CGAL_ALLOCATOR(T) spillway::detail::KernelAllocator<T>
+#define CGAL_ALLOCATOR(T) spillway::delaunay::InsertionAllocator<T>
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
@@ -28,7 +28,7 @@
 #include "src/error.h"
 #include "src/geometry/constructions/circumsphere.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -102,9 +102,9 @@ class Inserter {
   }
 
   /// The points that were left out, sorted.
-  [[nodiscard]] std::vector<Duplicate> duplicates() const {
+  [[nodiscard]] std::vector<DroppedDuplicate> duplicates() const {
     // A vertex's last owner is the kept one: follow each replacement to it, the latest first.
-    std::vector<Duplicate> result;
+    std::vector<DroppedDuplicate> result;
     std::unordered_map<VertexId, VertexId> owner;
     for (auto drop = drops_.rbegin(); drop != drops_.rend(); ++drop) {
       const auto known = owner.find(drop->kept);
@@ -139,7 +139,8 @@ class Inserter {
   const BaseCaseInput<D>& input_;
   typename Traits::Delaunay& delaunay_;
   typename Traits::Delaunay::Vertex_handle last_;
-  std::vector<Duplicate> drops_;  ///< in order of insertion; `kept` may itself be dropped later
+  std::vector<DroppedDuplicate>
+      drops_;  ///< in order of insertion; `kept` may itself be dropped later
 };
 
 /// BaseCase::not_inside: the infinite simplices, those near the sides of the safe box, and some
@@ -189,7 +190,7 @@ void keep_corners(BaseCase<D>& base_case) {
 template <int D>
 BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
   using Traits = CgalTraits<D>;
-  const KernelArena arena;
+  const InsertionArena arena;
   typename Traits::Delaunay delaunay;
   Inserter<D> inserter(input, delaunay);
   inserter.insert_all(basis);
@@ -206,9 +207,10 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
     cell->info() = static_cast<CellIndex>(count++);
   }
   if (count >= Simplex<D>::kLink) {
-    throw Error("a base case of " + std::to_string(input.points.size()) + " points has " +
-                    std::to_string(count) + " simplices, more than fit; choose smaller base cases",
-                ErrorCode::kTooLarge);
+    throw Failure("a base case of " + std::to_string(input.points.size()) + " points has " +
+                      std::to_string(count) +
+                      " simplices, more than fit; choose smaller base cases",
+                  ErrorCode::kTooLarge);
   }
   BorrowedSlab memory(SlabUse::kSimplices, count * sizeof(Simplex<D>));
   result.simplices = make_list<D>(input, *memory, count);
@@ -229,4 +231,4 @@ BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const Vertex
 template BaseCase<2> cgal_base_case<2>(const BaseCaseInput<2>&, std::span<const VertexId>);
 template BaseCase<3> cgal_base_case<3>(const BaseCaseInput<3>&, std::span<const VertexId>);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

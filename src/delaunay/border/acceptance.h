@@ -12,7 +12,7 @@
 #include "src/delaunay/border/simplex_index.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Which simplices of the triangulation of a border the merged triangulation has (Funke, Sanders
 /// 2017, Algorithm 1): those that span children or lie in an open one are new; of the others those
@@ -86,4 +86,4 @@ class Acceptance {
   SimplexIndex<D + 1> index_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

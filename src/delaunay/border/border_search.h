@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Of `candidates` finds those that are not found and that `question` says yes to: appends them to
 /// `border`, and their neighbours to `next`. See search_border().
@@ -25,7 +25,7 @@ void extend_border(std::span<const typename Mesh::Id> candidates, Mesh& mesh, Qu
                        [&](Id id) { return !mesh.found(id); });
   for_each_region_batch<D>(
       fresh.size(), [&](std::size_t s) { return mesh.corners(fresh[s]); }, mesh.positions(),
-      [&](std::size_t first, const RegionBatch<D>& regions) {
+      [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
         for (std::uint64_t bits = question(regions); bits != 0; bits &= bits - 1) {
           const Id id = fresh[first + std::countr_zero(bits)];
           if (!mesh.set_found(id)) continue;
@@ -40,7 +40,7 @@ void extend_border(std::span<const typename Mesh::Id> candidates, Mesh& mesh, Qu
 /// `mesh` has the type `Id` of its simplices, their corners(id), which are numbers of positions()
 /// or kInfiniteVertex, and neighbour(id, i); it knows which are found() and may be told so:
 /// set_found(id) is false if that was known. For each task make_question() makes a question of a
-/// RegionBatch, whose answer has the bits of those that are changed.
+/// ConflictRegionBatch, whose answer has the bits of those that are changed.
 template <int D, typename Mesh, typename MakeQuestion>
 std::vector<typename Mesh::Id> search_border(std::vector<typename Mesh::Id> starts, Mesh& mesh,
                                              const MakeQuestion& make_question) {
@@ -73,4 +73,4 @@ std::vector<typename Mesh::Id> search_border_alone(std::vector<typename Mesh::Id
   return border;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -5,7 +5,7 @@
 
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Whether a predicate is not known to be negative.
@@ -42,7 +42,7 @@ ConflictRegion<D>::ConflictRegion(const std::array<VertexId, D + 1>& vertices,
 
 template <int D>
 bool ConflictRegion<D>::may_meet(const Box<D>& box) const {
-  return infinite_ ? half_space_.meets(box) : spillway::detail::may_meet<D>(ball_, box);
+  return infinite_ ? half_space_.meets(box) : spillway::geometry::may_meet<D>(ball_, box);
 }
 
 template <int D>
@@ -55,7 +55,7 @@ bool ConflictRegion<D>::may_hold(const Point<D>& point) const {
     points[D] = point;
     return may_be_positive_or_zero<stages::Orientation<D>>(points);
   }
-  if (!spillway::detail::may_meet<D>(ball_, Box<D>{point, point})) return false;
+  if (!spillway::geometry::may_meet<D>(ball_, Box<D>{point, point})) return false;
   stages::Points<stages::InSphere<D>> points;
   std::copy(corners_.begin(), corners_.end(), points.begin());
   points[D + 1] = point;
@@ -65,4 +65,4 @@ bool ConflictRegion<D>::may_hold(const Point<D>& point) const {
 template class ConflictRegion<2>;
 template class ConflictRegion<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

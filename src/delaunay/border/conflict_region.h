@@ -10,7 +10,7 @@
 #include "src/geometry/constructions/plate.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Where a point may destroy or change a simplex: its closed circumsphere (certified), or, of
 /// an infinite simplex, the closed half-space beyond its facet.
@@ -39,8 +39,8 @@ class ConflictRegion {
 
   /// The same of a plate.
   [[nodiscard]] bool may_meet(const Plate<D>& plate) const {
-    return infinite_ ? spillway::detail::may_meet<D>(half_space_, plate)
-                     : spillway::detail::may_meet<D>(ball_, plate);
+    return infinite_ ? spillway::geometry::may_meet<D>(half_space_, plate)
+                     : spillway::geometry::may_meet<D>(ball_, plate);
   }
 
   /// False only if the point certainly lies outside. What needs big integers is not decided.
@@ -62,4 +62,4 @@ class ConflictRegion {
   HalfSpace<D> half_space_;  ///< of an infinite one
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/geometry/point.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Calls mark(s) for each simplex that a point in a leaf of one of the trees of boxes may change:
 /// the border against what the trees have. Corners are positions of `points`, or kInfiniteVertex.
@@ -24,7 +24,7 @@ void find_exposed(std::span<const std::array<VertexId, D + 1>> simplices,
   parallel_for(simplices.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return simplices[begin + s]; }, points,
-        [&](std::size_t first, const RegionBatch<D>& regions) {
+        [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
           std::uint64_t met = 0;
           for (const Tree* tree : trees) met |= regions.may_meet_leaf(*tree, regions.all() & ~met);
           for (; met != 0; met &= met - 1) mark(begin + first + std::countr_zero(met));
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> exposure_by_tree(std::span<const std::array<VertexId,
   parallel_for(simplices.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
     for_each_region_batch<D>(
         end - begin, [&](std::size_t s) { return simplices[begin + s]; }, points,
-        [&](std::size_t first, const RegionBatch<D>& regions) {
+        [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
           for (std::size_t t = first_tree; t < trees.size(); ++t) {
             std::uint64_t met = regions.may_meet_leaf(*trees[t], regions.all());
             for (; met != 0; met &= met - 1) {
@@ -58,4 +58,4 @@ std::vector<std::uint32_t> exposure_by_tree(std::span<const std::array<VertexId,
   return exposure;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

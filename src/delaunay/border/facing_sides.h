@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// The sides of a box beyond which other boxes lie.
 template <int D>
@@ -46,4 +46,4 @@ class FacingSides {
   std::array<bool, D> above_{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "src/delaunay/border/border_search.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/border/facing_sides.h"
-#include "src/delaunay/border/region_batch.h"
 #include "src/delaunay/common/hash.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 constexpr std::size_t kCandidateGrain = 4096;
@@ -122,7 +122,7 @@ std::vector<SimplexId> find_border(const Triangulation<D>& triangulation, const 
                                    std::span<ListMarks> marks) {
   MarkedMesh<D> mesh(triangulation, marks);
   return search_border<D>(beside_siblings<D>(triangulation, box, hull, siblings), mesh, [&] {
-    return [search = PointSearch<D>(siblings)](const RegionBatch<D>& regions) mutable {
+    return [search = PointSearch<D>(siblings)](const ConflictRegionBatch<D>& regions) mutable {
       return search.may_hold_points(regions, regions.all());
     };
   });
@@ -140,7 +140,7 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
         for_each_region_batch<D>(
             end - begin, [&](std::size_t s) { return simplices[candidates[begin + s]].vertices; },
             triangulation.points.span(),
-            [&](std::size_t first, const RegionBatch<D>& regions) {
+            [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
               std::uint64_t held = search.may_hold_points(regions, regions.all());
               for (; held != 0; held &= held - 1) {
                 const int s = std::countr_zero(held);
@@ -175,4 +175,4 @@ template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::ui
                                                 std::span<const std::uint32_t>, const Siblings<3>&,
                                                 std::span<ListMarks>);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

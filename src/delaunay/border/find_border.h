@@ -9,7 +9,7 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// What merging needs to remember of each simplex, in parallel with the lists of a triangulation.
 enum class Mark : std::uint8_t {
@@ -44,4 +44,4 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
                                     std::span<const std::uint32_t> candidates,
                                     const Siblings<D>& siblings, std::span<ListMarks> marks);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

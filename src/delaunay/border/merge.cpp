@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
@@ -79,7 +79,7 @@ class Merge {
   using Questions = typename Acceptance<D>::template Questions<SimplexId*>;
 
   /// A facet between a simplex of the border that is removed and one outside of the border.
-  struct OpenFacet {
+  struct UnpairedFacet {
     std::uint32_t removed;  ///< number in border_
     int corner;             ///< of the removed simplex's vertex opposite the facet
     SimplexId outside;
@@ -101,9 +101,9 @@ class Merge {
   template <typename Body>
   void for_mesh_simplices(std::size_t begin, std::size_t end, const Body& body) const;
   std::uint32_t accept_grain(std::size_t begin, std::size_t end, Questions questions);
-  [[nodiscard]] std::vector<OpenFacet> open_facets();
+  [[nodiscard]] std::vector<UnpairedFacet> open_facets();
   void link_simplex(SimplexId in_border_mesh, SimplexId created, const ConcurrentIndex& facet_index,
-                    const std::vector<OpenFacet>& facets, std::vector<Link>& links);
+                    const std::vector<UnpairedFacet>& facets, std::vector<Link>& links);
   void link_new_list(const std::vector<std::vector<Link>>& links);
   void link_children(const std::vector<std::vector<Link>>& links, Task& task);
 
@@ -277,9 +277,9 @@ void Merge<D>::accept(Task& task) {
   std::partial_sum(first_created.begin(), first_created.end(), first_created.begin());
   const std::size_t created_count = first_created.back();
   if (created_count >= Simplex<D>::kLink || border_.size() >= Simplex<D>::kLink) {
-    throw Error("the border of " + std::to_string(border_vertices_.size()) +
-                    " points has more simplices than fit into one block",
-                ErrorCode::kTooLarge);
+    throw Failure("the border of " + std::to_string(border_vertices_.size()) +
+                      " points has more simplices than fit into one block",
+                  ErrorCode::kTooLarge);
   }
 
   new_list().simplices = SlabArray<Simplex<D>>(created_count);
@@ -299,8 +299,8 @@ void Merge<D>::accept(Task& task) {
 }
 
 template <int D>
-auto Merge<D>::open_facets() -> std::vector<OpenFacet> {
-  std::vector<std::vector<OpenFacet>> found(grain_count(border_.size(), kGrain));
+auto Merge<D>::open_facets() -> std::vector<UnpairedFacet> {
+  std::vector<std::vector<UnpairedFacet>> found(grain_count(border_.size(), kGrain));
   parallel_for(border_.size(), kGrain, [&](std::size_t g, std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       if (survived_[b] != 0) continue;
@@ -312,7 +312,7 @@ auto Merge<D>::open_facets() -> std::vector<OpenFacet> {
       }
     }
   });
-  std::vector<OpenFacet> facets;
+  std::vector<UnpairedFacet> facets;
   for (const auto& some : found) facets.insert(facets.end(), some.begin(), some.end());
   return facets;
 }
@@ -321,7 +321,7 @@ auto Merge<D>::open_facets() -> std::vector<OpenFacet> {
 template <int D>
 void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
                             const ConcurrentIndex& facet_index,
-                            const std::vector<OpenFacet>& facets, std::vector<Link>& links) {
+                            const std::vector<UnpairedFacet>& facets, std::vector<Link>& links) {
   Simplex<D>& simplex = new_list().simplices[created.index];
   for (int i = 0; i <= D; ++i) {
     SimplexId other = targets_[flat(border_mesh_.neighbour(in_border_mesh, i))];
@@ -333,7 +333,7 @@ void Merge<D>::link_simplex(SimplexId in_border_mesh, SimplexId created,
       const SortedVertices<D> facet(facet_vertices(simplex.vertices, i));
       const std::uint32_t f =
           facet_index.find(facet_hash(simplex.vertices, i), [&](std::uint32_t item) {
-            const OpenFacet& open = facets[item];
+            const UnpairedFacet& open = facets[item];
             const auto found = facet_vertices(border_corners_[open.removed], open.corner);
             return facet.vertices == SortedVertices<D>(found).vertices;
           });
@@ -354,7 +354,7 @@ void Merge<D>::link(Task& task) {
   std::vector<std::vector<Link>> links(grain_count(targets_.size(), kGrain));
   {
     const Stopwatch watch(task.seconds);
-    const std::vector<OpenFacet> facets = open_facets();
+    const std::vector<UnpairedFacet> facets = open_facets();
     ConcurrentIndex facet_index(facets.size());
     parallel_for(facets.size(), kGrain, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
@@ -473,4 +473,4 @@ template PartSurface merge<3>(Triangulation<3>&, std::span<ListMarks>, std::span
                               const Part<3>&, std::span<PartSurface>, bool,
                               const BorderTriangulator<3>&, Task&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -9,9 +9,11 @@
 #include "src/delaunay/common/triangulation.h"
 #include "src/delaunay/division/divide.h"
 
-namespace spillway::detail {
-
+namespace spillway::runtime {
 struct Task;
+}
+
+namespace spillway::delaunay {
 
 /// What merging needs to know of a part that is done; its simplices are in the lists of its
 /// subtree.
@@ -55,4 +57,4 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks,
                   std::span<PartSurface> children, bool may_stay_open,
                   const BorderTriangulator<D>& triangulate_border, Task& task);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

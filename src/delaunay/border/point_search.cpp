@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// What a point takes beside a box, about.
@@ -33,7 +33,8 @@ bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
 }
 
 template <int D>
-std::uint64_t PointSearch<D>::may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked) {
+std::uint64_t PointSearch<D>::may_hold_points(const ConflictRegionBatch<D>& regions,
+                                              std::uint64_t asked) {
   std::uint64_t near = 0;
   for (const Part<D>* part : siblings_.parts) near |= regions.may_meet_leaf(*part, asked & ~near);
   if (siblings_.most_boxes == 0 || !may_ask()) return near;
@@ -110,4 +111,4 @@ template bool asking_for_points_pays<3>(std::span<const std::array<VertexId, 4>>
 template class PointSearch<2>;
 template class PointSearch<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,12 +7,12 @@
 #include <span>
 
 #include "src/delaunay/border/conflict_region.h"
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/border/run_boxes.h"
 #include "src/delaunay/division/divide.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// The parts beside one part, with their points.
 template <int D>
@@ -44,7 +44,8 @@ class PointSearch {
   [[nodiscard]] bool may_hold_a_point(const ConflictRegion<D>& region);
 
   /// The bits of those regions `asked` for of which that is not false.
-  [[nodiscard]] std::uint64_t may_hold_points(const RegionBatch<D>& regions, std::uint64_t asked);
+  [[nodiscard]] std::uint64_t may_hold_points(const ConflictRegionBatch<D>& regions,
+                                              std::uint64_t asked);
 
   /// How many steps all questions have taken.
   [[nodiscard]] std::size_t steps() const { return steps_; }
@@ -78,4 +79,4 @@ template <int D>
 bool asking_for_points_pays(std::span<const std::array<VertexId, D + 1>> sample,
                             std::span<const Point<D>> points, const Siblings<D>& siblings);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -5,7 +5,7 @@
 #include "src/delaunay/border/run_boxes.h"
 #include "src/geometry/constructions/plate.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Where points lie, roughly: each of them lies in one of the lowest boxes, and in the plate of
 /// that box.
@@ -20,4 +20,4 @@ struct PointSketch {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

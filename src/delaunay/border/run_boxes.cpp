@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Boxes around every `count` consecutive items.
@@ -40,4 +40,4 @@ void RunBoxes<D>::add_levels() {
 template class RunBoxes<2>;
 template class RunBoxes<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Boxes over short runs of points that lie in the order of a Hilbert curve, boxes over a few of
 /// those boxes that follow each other, and so on: a tree without pointers.
@@ -32,4 +32,4 @@ class RunBoxes {
   std::vector<std::vector<Box<D>>> levels_;  ///< the lowest one first
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

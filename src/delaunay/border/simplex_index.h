@@ -10,7 +10,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// A hash index of simplices of N vertices that are kept elsewhere. It is filled and searched a
 /// batch at a time: what lies far apart in memory is fetched for all before the first is looked at.
@@ -69,4 +69,4 @@ class SimplexIndex {
   ConcurrentIndex index_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

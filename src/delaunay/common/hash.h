@@ -9,7 +9,7 @@
 
 #include "src/delaunay/common/triangulation.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// A bijection of 64-bit numbers that spreads every bit over all others (the finalizer of Steele,
 /// Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
@@ -112,4 +112,4 @@ class ConcurrentIndex {
   std::unique_ptr<std::atomic<std::uint32_t>[]> slots_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -5,7 +5,7 @@
 #include <queue>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Plays a tree of tasks on a number of cores, event by event.
@@ -111,4 +111,4 @@ class Simulation {
 
 double greedy_makespan(const Task& root, unsigned cores) { return Simulation(cores).run(root); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -4,7 +4,7 @@
 
 #include "src/runtime/task.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Adds the time between its construction and its destruction to a task's seconds.
 class Stopwatch {
@@ -25,4 +25,4 @@ class Stopwatch {
 /// data costs nothing.
 double greedy_makespan(const Task& root, unsigned cores);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -8,7 +8,7 @@
 
 #include "src/delaunay/common/working_memory.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// An array of plain items at the beginning of a slab of memory. Items are not initialised.
 template <typename T>
@@ -66,4 +66,4 @@ class SlabArray {
   std::size_t size_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -1,6 +1,6 @@
 #include "src/delaunay/common/triangulation.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 template <int D>
 std::size_t Triangulation<D>::finite_count() const {
@@ -12,4 +12,4 @@ std::size_t Triangulation<D>::finite_count() const {
 template std::size_t Triangulation<2>::finite_count() const;
 template std::size_t Triangulation<3>::finite_count() const;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -11,7 +11,7 @@
 #include "src/delaunay/common/slab_array.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Number of a simplex: its list and its index there.
 struct SimplexId {
@@ -78,10 +78,10 @@ struct SimplexList {
 };
 
 /// A point that equals another one, and the vertex that stands for both.
-struct Duplicate {
+struct DroppedDuplicate {
   VertexId dropped;
   VertexId kept;
-  auto operator<=>(const Duplicate&) const = default;
+  auto operator<=>(const DroppedDuplicate&) const = default;
 };
 
 /// A Delaunay triangulation in memory, finite and infinite simplices with their neighbours.
@@ -97,7 +97,7 @@ struct Triangulation {
   SlabArray<VertexId> input_index;    ///< by vertex number
   std::vector<SimplexList<D>> lists;  ///< in the order of the tree of merges, children first
   std::vector<SimplexId> hull;        ///< the infinite simplices, one for each facet of the hull
-  std::vector<Duplicate> duplicates;  ///< sorted by the dropped point's vertex number
+  std::vector<DroppedDuplicate> duplicates;  ///< sorted by the dropped point's vertex number
   /// Dimension of the points' affine hull: D, or less if there are no simplices; -1 without points.
   int dimension = -1;
 
@@ -125,4 +125,4 @@ struct Triangulation {
   }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -14,7 +14,7 @@
 
 #include "src/runtime/run_memory.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
@@ -160,4 +160,4 @@ void release_kept_slabs(std::size_t larger_than) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <memory>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::delaunay {
 
 /// Asks for huge pages where the memory spans some: a wish, without it everything is only slower.
 void ask_for_huge_pages(void* memory, std::size_t bytes);
@@ -78,4 +80,4 @@ void keep_slab(SlabUse use, Slab slab);
 /// Gives the system the slabs that are kept for coming base cases: all, or those that are larger.
 void release_kept_slabs(std::size_t larger_than = 0);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

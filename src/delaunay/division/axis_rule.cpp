@@ -1,6 +1,6 @@
 #include "src/delaunay/division/axis_rule.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 template <int D>
 std::optional<Cut> AxisRule<D>::choose(const PointsToCut<D>& points) const {
@@ -15,4 +15,4 @@ std::optional<Cut> AxisRule<D>::choose(const PointsToCut<D>& points) const {
 template class AxisRule<2>;
 template class AxisRule<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -4,7 +4,7 @@
 
 #include "src/delaunay/division/cut_rule.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Cuts at a share of the sample, across an axis that the scheme tells ("dynamic", "cyclic" and
 /// "constant" of Funke, Sanders 2017, section 3); across the longest one if the sample has no
@@ -20,4 +20,4 @@ class AxisRule final : public CutRule<D> {
   Division scheme_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

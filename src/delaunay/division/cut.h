@@ -8,7 +8,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// A cut in two: below `value` on `axis`, and not below.
 struct Cut {
@@ -56,4 +56,4 @@ std::optional<int> side_of(const Box<D>& box, const Cut& cut) {
   return std::nullopt;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -6,7 +6,7 @@
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// Another cut must cost less than this part of the one that is preferred.
@@ -123,4 +123,4 @@ bool CutJudgement<D>::some_cut_pays() const {
 template class CutJudgement<2>;
 template class CutJudgement<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,7 +7,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// A cut does not pay if more than this share of the points has simplices across it: they would be
 /// triangulated twice.
@@ -62,4 +62,4 @@ class CutJudgement {
   std::array<std::vector<double>, D> crossing_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -11,7 +11,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Points of which no more is known than the box that they lie in, evenly for all one knows.
 template <int D>
@@ -61,4 +61,4 @@ double value_at(std::span<Point<D>> sample, int axis, const CutShare& share) {
   return (*place)[axis];
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

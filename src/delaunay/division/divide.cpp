@@ -17,7 +17,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// The median of the smallest sample lies within 2% of the true one, by rank, nearly always; that
@@ -76,7 +76,7 @@ class Divider {
     std::vector<Piece<D>> pieces;
     {
       const Stopwatch watch(task.seconds);
-      if (piece.size() > options_.leaf_size) {
+      if (piece.size() > options_.leaf_points) {
         split(piece, options_.children, depth, pieces, samples);
       }
       if (pieces.size() <= 1) {
@@ -140,7 +140,7 @@ class Divider {
   [[nodiscard]] std::size_t leaves_of(const Piece<D>& piece) const {
     if (!options_.fill_leaves) return 1;
     const std::size_t filled =
-        std::max<std::size_t>(1, options_.leaf_size - options_.leaf_size / kSpareShare);
+        std::max<std::size_t>(1, options_.leaf_points - options_.leaf_points / kSpareShare);
     return (piece.size() + filled - 1) / filled;
   }
 
@@ -317,4 +317,4 @@ Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
 template Part<2> divide<2>(std::span<Point<2>>, std::span<VertexId>, const DivideOptions&, Task*);
 template Part<3> divide<3>(std::span<Point<3>>, std::span<VertexId>, const DivideOptions&, Task*);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -11,12 +11,14 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
-
+namespace spillway::runtime {
 struct Task;
+}
+
+namespace spillway::delaunay {
 
 struct DivideOptions {
-  std::size_t leaf_size = 0;  ///< parts of at most this many points are not divided further
+  std::size_t leaf_points = 0;  ///< parts of at most this many points are not divided further
   /// Which axis is cut. The last three are "dynamic", "cyclic" and "constant" of Funke, Sanders
   /// 2017, section 3.
   Division scheme = Division::kLeastBorder;
@@ -48,7 +50,7 @@ struct Part {
 /// Divides the points into a k-d tree and puts them, with their input indices, into its order,
 /// those of a leaf into the order of a Hilbert curve. Cuts compare coordinates with a value taken
 /// from a sample, so equal points always stay together; a part is a leaf when it has at most
-/// leaf_size points or when all its points are equal. Where the sample has no extent on the
+/// leaf_points points or when all its points are equal. Where the sample has no extent on the
 /// scheme's axis the longest one is cut. The result doesn't depend on the number of threads. If
 /// `task` is set, it receives the tree of divisions with their durations. Throws Interrupted if a
 /// stop was requested in time.
@@ -56,4 +58,4 @@ template <int D>
 Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
                const DivideOptions& options, Task* task = nullptr);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

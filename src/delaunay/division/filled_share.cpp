@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 template <int D>
 double filled_share(std::span<const Point<D>> points, const Box<D>& box) {
@@ -51,4 +51,4 @@ template bool is_hollow<3>(std::span<const Point<3>>, const Box<3>&);
 template double filled_share<2>(std::span<const Point<2>>, const Box<2>&);
 template double filled_share<3>(std::span<const Point<3>>, const Box<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// How much of the box around some points they fill: of a grid with about half as many cells as
 /// there are points, the share of the cells that hold one. About 0.86 for points spread evenly,
@@ -28,4 +28,4 @@ std::vector<Point<D>> judged_sample(std::span<const Point<D>> points);
 template <int D>
 bool is_hollow(std::span<const Point<D>> points, const Box<D>& box);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

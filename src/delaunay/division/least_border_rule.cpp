@@ -6,7 +6,7 @@
 #include "src/delaunay/division/cut_judgement.h"
 #include "src/delaunay/division/filled_share.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// A cut may be moved by one of so many points of the sample.
@@ -35,4 +35,4 @@ std::optional<Cut> LeastBorderRule<D>::choose(const PointsToCut<D>& points) cons
 template class LeastBorderRule<2>;
 template class LeastBorderRule<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

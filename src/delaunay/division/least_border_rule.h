@@ -4,7 +4,7 @@
 
 #include "src/delaunay/division/cut_rule.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 struct LeastBorderOptions {
   /// The smallest set of which a sample is triangulated (CutJudgement), if it is hollow.
@@ -28,4 +28,4 @@ class LeastBorderRule final : public CutRule<D> {
   LeastBorderOptions options_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -3,7 +3,9 @@
 #include <concepts>
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::delaunay {
 
 /// A tree of boxes over points, such as Part and TileNode: each node has a tight `box` around its
 /// points, tells their number, and has `children`, which are none for a leaf.
@@ -15,4 +17,4 @@ concept PointTree = requires(const Tree& tree) {
   tree.box;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

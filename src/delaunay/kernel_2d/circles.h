@@ -9,7 +9,7 @@
 #include "src/delaunay/kernel_2d/triangles.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 /// Circles are made of triangles whose determinant exceeds the sum of two squared sides by this
 /// factor and this summand.
@@ -102,4 +102,4 @@ SPILLWAY_INLINE CircleBits make_circles(const StarView& star, std::size_t begin)
   return {mask_of((R)in_conflict), mask_of((R)unproved)};
 }
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

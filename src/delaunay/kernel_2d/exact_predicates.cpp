@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_2d/filters.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 namespace {
 
 /// An unevaluated sum of two doubles, the second at most half a unit in the last place of the
@@ -208,4 +208,4 @@ bool conflicts(const WorkingPoints& points, const Quad& quad) {
   return larger(a, c) > larger(b, query);
 }
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

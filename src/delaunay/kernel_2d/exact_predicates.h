@@ -7,7 +7,7 @@
 
 #include "src/delaunay/kernel_2d/working_points.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 /// Four vertices, all finite.
 struct Quad {
@@ -41,4 +41,4 @@ int side_of_line(const WorkingPoints& points, VertexId a, VertexId b, VertexId q
 /// each other on it.
 bool conflicts(const WorkingPoints& points, const Quad& quad);
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

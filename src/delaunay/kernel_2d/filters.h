@@ -7,7 +7,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 /// Two numbers that are computed with side by side.
 using Pair [[gnu::vector_size(16)]] = double;
@@ -72,4 +72,4 @@ inline bool tie_conflicts(const Corner& from, const Corner& to, const Corner& ap
   return std::max(order_key(from), order_key(to)) > std::max(order_key(apex), 0.0);
 }
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_2d/circles.h"
 #include "src/delaunay/kernel_2d/exact_predicates.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 namespace {
 
 using Triangles = TriangleArray;
@@ -322,4 +322,4 @@ void Insertion<kLattice>::insert(VertexId point, VertexId next) {
 template class Insertion<false>;
 template class Insertion<true>;
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

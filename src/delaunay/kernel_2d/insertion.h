@@ -14,7 +14,7 @@
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 /// Builds the triangulation point by point. kLattice says what WorkingPoints::lattice does.
 template <bool kLattice>
@@ -89,4 +89,4 @@ class Insertion {
 extern template class Insertion<false>;
 extern template class Insertion<true>;
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

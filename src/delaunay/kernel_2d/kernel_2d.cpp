@@ -11,7 +11,7 @@
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace kernel_2d {
 namespace {
 
@@ -54,4 +54,4 @@ BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const V
   return kernel::incremental_base_case<kernel_2d::Traits>(input, basis);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -6,11 +6,11 @@
 
 #include "src/delaunay/kernel_common/kernel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Triangulates points that span the plane; `basis` has the places of three that are not collinear.
-/// Works for any finite doubles. Throws Error for more than 2^27 - 1 points, whose triangles are
+/// Works for any finite doubles. Throws Failure for more than 2^27 - 1 points, whose triangles are
 /// more than it can number.
 BaseCase<2> kernel_2d_base_case(const BaseCaseInput<2>& input, std::span<const VertexId> basis);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -6,7 +6,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 /// A vertex's place in a triangle, and the edge opposite to it: 16 * triangle + slot (0, 1 or 2).
 using Handle = std::uint32_t;
@@ -72,4 +72,4 @@ class TriangleArray {
   std::uint32_t* numbers_;
 };
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

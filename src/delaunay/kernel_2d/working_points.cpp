@@ -2,7 +2,7 @@
 
 #include "src/delaunay/kernel_common/coordinate_scaling.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory,
                                   const std::optional<Box<2>>& safe_box) {
@@ -13,4 +13,4 @@ WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory
   return result;
 }
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

@@ -11,7 +11,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 
 using kernel::kFirstPoint;
 using kernel::kInfinite;
@@ -36,4 +36,4 @@ struct WorkingPoints : kernel::ScaledPoints<2> {
 WorkingPoints make_working_points(std::span<const Point<2>> points, Slab& memory,
                                   const std::optional<Box<2>>& safe_box = std::nullopt);
 
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/runtime/work_lease.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// Where the cells of a base case lie: a slab, of which a lease may allow a part only.
 class CellMemory {
@@ -32,7 +32,7 @@ class CellMemory {
   /// What one of many cells takes, with the room to spare.
   static constexpr double kBytesOfCell = 1.25 * sizeof(Cell);
 
-  /// Makes room for `cells` cells and some more, of which `used` stay what they are. Throws Error
+  /// Makes room for `cells` cells and some more, of which `used` stay what they are. Throws Failure
   /// (kOutOfBudget) where the lease cannot grow.
   CellArray grow(std::size_t cells, std::size_t used, const WorkForecast& forecast) {
     const std::size_t wanted = std::min(cells + cells / 4, CellArray::kMaxCells);
@@ -53,4 +53,4 @@ class CellMemory {
   std::size_t ends_ = std::size_t{14} << 20;
 };
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

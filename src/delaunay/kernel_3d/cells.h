@@ -9,7 +9,7 @@
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// A cell, or one of its facets, by a word of the array of cells: a cell's first one, 16 * cell,
 /// and for the facet opposite to the vertex in a slot (0 to 3) that of its neighbour there, 16 *
@@ -101,4 +101,4 @@ class CellArray {
   std::byte* bytes_ = nullptr;
 };
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

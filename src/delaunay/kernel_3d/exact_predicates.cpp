@@ -9,7 +9,7 @@
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 namespace {
 
 /// What underflow may add to the errors, in coordinates of extent 1 to 2.
@@ -374,4 +374,4 @@ bool tie_conflicts(const WorkingPoints& points, const Five& five) {
   return false;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

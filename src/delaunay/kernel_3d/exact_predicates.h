@@ -8,7 +8,7 @@
 
 #include "src/delaunay/kernel_3d/working_points.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// Finite vertices: those of a cell, and the query.
 struct Five {
@@ -32,7 +32,7 @@ std::optional<int> orientation_filtered(const WorkingPoints& points,
 
 /// In-sphere determinant in integers: its sign, or nothing if the coordinates are not multiples of
 /// a power of two that is small enough. kLimbs = 1: their largest magnitude over 2^60; 2: over
-/// 2^124. Lattice points always are.
+/// 2^124. IntegerLattice points always are.
 template <int kLimbs>
 std::optional<int> in_sphere_integer(const WorkingPoints& points, const Five& five);
 
@@ -52,4 +52,4 @@ int orientation(const WorkingPoints& points, const std::array<VertexRef, 4>& p);
 /// rule of in_sphere().
 bool tie_conflicts(const WorkingPoints& points, const Five& five);
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/ties_by_lanes.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// Words whose highest bits are the bits of a number.
 struct HighBits {
@@ -146,4 +146,4 @@ SPILLWAY_INLINE auto Insertion<kHasOrderKeys>::find_hole(VertexRef query, std::s
   return hole;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -29,7 +29,7 @@
 
 #include "src/delaunay/kernel_3d/insertion_by_lanes.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 template <bool kHasOrderKeys>
 void Insertion<kHasOrderKeys>::insert_by_4(VertexRef query, VertexRef next) {
@@ -48,7 +48,7 @@ template void Insertion<true>::insert_by_4(VertexRef, VertexRef);
 template void Insertion<false>::insert_by_4_with_32_registers(VertexRef, VertexRef);
 template void Insertion<true>::insert_by_4_with_32_registers(VertexRef, VertexRef);
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d
 
 #ifdef SPILLWAY_AVX2
 #ifdef __clang__

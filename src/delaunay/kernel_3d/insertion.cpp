@@ -12,7 +12,7 @@
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/error.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 namespace {
 
 /// How far the query is outside of the cell's sphere: the difference of squares.
@@ -157,7 +157,7 @@ bool Insertion<kHasOrderKeys>::conflicts(Handle first, VertexRef query) const {
 template <bool kHasOrderKeys>
 [[gnu::noinline, gnu::cold]] void Insertion<kHasOrderKeys>::grow_cells(std::size_t count) {
   if (count > CellArray::kMaxCells) {
-    throw Error(
+    throw Failure(
         fmt::format("a base case of {} points has more than {} cells, more than can be numbered; "
                     "choose smaller base cases",
                     points_.count - 1, CellArray::kMaxCells),
@@ -273,4 +273,4 @@ void Insertion<kHasOrderKeys>::close_gaps() {
 template class Insertion<false>;
 template class Insertion<true>;
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -20,7 +20,7 @@
 /// For functions that use the 32 vector registers of AVX-512.
 #define SPILLWAY_TARGET_32_REGISTERS SPILLWAY_TARGET("avx2,bmi,bmi2,avx512f,avx512vl,avx512dq")
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// The cells of a hole, and the facets that are its boundary.
 struct HoleLists {
@@ -132,4 +132,4 @@ class Insertion {
 extern template class Insertion<false>;
 extern template class Insertion<true>;
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

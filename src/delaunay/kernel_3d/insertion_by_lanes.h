@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/star_spheres.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 inline constexpr Handle kNone = ~Handle{0};
 
@@ -109,4 +109,4 @@ SPILLWAY_INLINE void Insertion<kHasOrderKeys>::insert_by(VertexRef query, Vertex
   make_star_spheres<kLanes>(query, next, hole.facet_count, on_hull);
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

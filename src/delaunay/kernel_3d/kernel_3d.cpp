@@ -13,7 +13,7 @@
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace kernel_3d {
 namespace {
 
@@ -57,4 +57,4 @@ BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const V
   return kernel::incremental_base_case<kernel_3d::Traits>(input, basis);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -6,11 +6,11 @@
 
 #include "src/delaunay/kernel_common/kernel.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Triangulates points that span space; `basis` has the places of four that are not coplanar. Works
-/// for any finite doubles. Throws Error for more than 2^28 - 2 points, or if there are more than
+/// for any finite doubles. Throws Failure for more than 2^28 - 2 points, or if there are more than
 /// 2^28 cells, which is more than it can number: those of some 39 million scattered points.
 BaseCase<3> kernel_3d_base_case(const BaseCaseInput<3>& input, std::span<const VertexId> basis);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// Below, products of edges may have lost too much by underflow.
 inline constexpr double kSmallestEdges = 0x1p-400;
@@ -106,4 +106,4 @@ SPILLWAY_INLINE FourAnswers test_four(const At& at, const double* query) {
   }
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 [[gnu::noinline]] bool StarMaker::make_large(const HoleView& hole) {
   vertices_.resize(std::max(vertices_.size(), hole.count));
@@ -85,4 +85,4 @@ void StarMaker::join_by_hashing(const HoleView& hole) {
   }
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// A hole, and where its star is to be made. What the removed cells hold is still there.
 struct HoleView {
@@ -134,4 +134,4 @@ SPILLWAY_INLINE bool StarMaker::make_small(const HoleView& hole) {
   return number_of[kInfinite / 4] != kNoCorner;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -12,7 +12,7 @@
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// A cell is too flat for its sphere if the product of its edges is this many times its
 /// determinant.
@@ -135,4 +135,4 @@ SPILLWAY_INLINE std::uint32_t make_spheres(const StarView& star, std::size_t beg
   return mask_of((R)(proves & (I)s));
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -10,7 +10,7 @@
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 /// The determinant of the differences of three points to a query, by their records. On tiny
 /// lattices it is exact.
@@ -80,4 +80,4 @@ template <int kLanes>
   return result;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

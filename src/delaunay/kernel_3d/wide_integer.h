@@ -8,7 +8,7 @@
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 __extension__ using Uint128 = unsigned __int128;
 
@@ -87,4 +87,4 @@ SPILLWAY_INLINE WideInteger<kA + kB> operator*(const WideInteger<kA>& a, const W
   return product;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -5,7 +5,7 @@
 
 #include "src/delaunay/kernel_common/coordinate_scaling.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory,
                                   const std::optional<Box<3>>& safe_box) {
@@ -35,4 +35,4 @@ WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory
   return result;
 }
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

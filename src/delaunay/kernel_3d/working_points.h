@@ -12,7 +12,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 
 using kernel::kFirstPoint;
 
@@ -46,4 +46,4 @@ inline constexpr VertexRef ref(VertexId number) { return 4 * number; }
 WorkingPoints make_working_points(std::span<const Point<3>> points, Slab& memory,
                                   const std::optional<Box<3>>& safe_box = std::nullopt);
 
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

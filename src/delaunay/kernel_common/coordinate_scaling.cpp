@@ -7,7 +7,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// A lattice that all points belong to: they are `corner` plus integers, over 2^exponent.
@@ -81,4 +81,4 @@ CoordinateScaling<D>::CoordinateScaling(std::span<const Point<D>> points) {
 template class CoordinateScaling<2>;
 template class CoordinateScaling<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -10,7 +10,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Multiplies coordinates by a power of two. Points of a lattice (any set of points that all are
 /// integers below 2^53 times one power of two: LiDAR's integers as well as quarters of a metre)
@@ -53,4 +53,4 @@ class CoordinateScaling {
   Point<D> extent_{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -12,7 +12,7 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_common/lanes.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 /// One coordinate of the cells of eight points, or a bit of each level for them.
@@ -275,4 +275,4 @@ std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<
 template std::vector<VertexId> hilbert_order<2>(std::span<const Point<2>>, const Box<2>&);
 template std::vector<VertexId> hilbert_order<3>(std::span<const Point<3>>, const Box<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

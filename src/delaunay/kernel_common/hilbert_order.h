@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// Positions of the points in the order in which a Hilbert curve over `box`, which holds them all,
 /// visits them. A cell of it with many points has a curve of its own; the few of one cell keep
@@ -16,4 +16,4 @@ namespace spillway::detail {
 template <int D>
 std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<D>& box);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -19,7 +19,7 @@
 #include "src/error.h"
 #include "src/runtime/work_lease.h"
 
-namespace spillway::detail::kernel {
+namespace spillway::delaunay::kernel {
 
 /// Lists what an insertion has made: in the slab where its records lie, which it is done with, or
 /// in memory of its own. `usual` records are what there was room for at first.
@@ -85,10 +85,10 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
   constexpr int kDimension = Traits::kDimension;
   const std::size_t count = input.points.size();
   if (count > Traits::kMostPoints) {
-    throw Error(fmt::format("a base case of {} points is more than can be numbered; choose base "
-                            "cases of at most {} points",
-                            count, Traits::kMostPoints),
-                ErrorCode::kTooLarge);
+    throw Failure(fmt::format("a base case of {} points is more than can be numbered; choose base "
+                              "cases of at most {} points",
+                              count, Traits::kMostPoints),
+                  ErrorCode::kTooLarge);
   }
   BorrowedSlab point_memory(SlabUse::kPoints,
                             (count + kFirstPoint) * sizeof(typename Traits::WorkingPoints::Row));
@@ -108,4 +108,4 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
   });
 }
 
-}  // namespace spillway::detail::kernel
+}  // namespace spillway::delaunay::kernel

@@ -10,7 +10,7 @@
 
 #include "src/delaunay/kernel_common/kernel.h"
 
-namespace spillway::detail::kernel {
+namespace spillway::delaunay::kernel {
 
 /// The kernels' own vertex numbers: the infinite vertex, then the points in their order.
 inline constexpr VertexId kInfinite = 0;
@@ -83,11 +83,11 @@ std::vector<VertexId> choose_kept(const BaseCaseInput<D>& input,
   return kept;
 }
 
-inline std::vector<Duplicate> list_duplicates(std::span<const Repetition> repetitions,
-                                              std::span<const VertexId> kept,
-                                              VertexId first_vertex) {
+inline std::vector<DroppedDuplicate> list_duplicates(std::span<const Repetition> repetitions,
+                                                     std::span<const VertexId> kept,
+                                                     VertexId first_vertex) {
   const VertexId shift = first_vertex - kFirstPoint;
-  std::vector<Duplicate> duplicates;
+  std::vector<DroppedDuplicate> duplicates;
   for (const Repetition& r : repetitions) {
     // The point that was inserted is dropped where it was not the one to keep, in its stead.
     const VertexId dropped = kept[r.vertex] == r.point ? r.vertex : r.point;
@@ -97,4 +97,4 @@ inline std::vector<Duplicate> list_duplicates(std::span<const Repetition> repeti
   return duplicates;
 }
 
-}  // namespace spillway::detail::kernel
+}  // namespace spillway::delaunay::kernel

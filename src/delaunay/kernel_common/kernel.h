@@ -14,9 +14,11 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
-
+namespace spillway::runtime {
 class WorkLease;
+}
+
+namespace spillway::delaunay {
 
 /// The points of one base case, neighbours near each other in the list (a Hilbert curve's order, as
 /// divide() leaves them; any order is correct, but slower): point i is vertex first_vertex + i, and
@@ -50,9 +52,9 @@ struct BaseCase {
   SlabArray<Simplex<D>> simplices;  ///< finite and infinite; none if dimension < D
   /// Instead of these, if they were all that was asked for: the vertices of each.
   SlabArray<std::array<VertexId, D + 1>> corners;
-  std::vector<std::uint32_t> hull;    ///< indices of the infinite simplices
-  std::vector<Duplicate> duplicates;  ///< sorted
-  int dimension = -1;                 ///< of the points' affine hull
+  std::vector<std::uint32_t> hull;           ///< indices of the infinite simplices
+  std::vector<DroppedDuplicate> duplicates;  ///< sorted
+  int dimension = -1;                        ///< of the points' affine hull
   /// If there are simplices and there was a safe box to ask about: the indices, ascending, of all
   /// simplices but those that are finite and whose closed circumsphere certainly lies inside the
   /// box and touches no side.
@@ -91,4 +93,4 @@ void recycle(SlabArray<Simplex<D>> used) {
   keep_slab(SlabUse::kSimplices, used.take_slab());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

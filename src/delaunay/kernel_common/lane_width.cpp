@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 std::atomic<int> most_doubles = 8;
@@ -27,4 +27,4 @@ int lane_width() { return std::min(most_doubles.load(), widest_lanes()); }
 
 void limit_lanes(int doubles) { most_doubles = doubles; }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

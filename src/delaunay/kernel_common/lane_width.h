@@ -1,6 +1,8 @@
 #pragma once
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::delaunay {
 
 /// How many doubles the processor can compute with at a time, as far as it matters to the own
 /// kernels: 2, 4 (AVX2) or 8 (AVX-512, of which they use only that there are twice as many
@@ -14,4 +16,4 @@ int lane_width();
 /// starts.
 void limit_lanes(int doubles);
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

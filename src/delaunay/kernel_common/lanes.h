@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "src/rooms.h"
+
 // Inlined even where the caller has more lanes than the rest of the program.
 #define SPILLWAY_INLINE [[gnu::always_inline]] inline
 
@@ -18,7 +20,7 @@
 #define SPILLWAY_TARGET(set)
 #endif
 
-namespace spillway::detail::kernel {
+namespace spillway::delaunay::kernel {
 
 template <int kLanes>
 struct LaneTypes;
@@ -207,12 +209,12 @@ SPILLWAY_INLINE void scatter(const Records<kLanes>& records, const At& at) {
   }
 }
 
-}  // namespace spillway::detail::kernel
+}  // namespace spillway::delaunay::kernel
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
 using namespace kernel;
 }
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
 using namespace kernel;
 }

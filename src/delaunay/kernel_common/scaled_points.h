@@ -13,7 +13,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail::kernel {
+namespace spillway::delaunay::kernel {
 
 /// What is known of points whose coordinates a CoordinateScaling has made.
 template <int D>
@@ -45,4 +45,4 @@ const Row* scale_points(const CoordinateScaling<D>& scaling, std::span<const Poi
   return rows;
 }
 
-}  // namespace spillway::detail::kernel
+}  // namespace spillway::delaunay::kernel

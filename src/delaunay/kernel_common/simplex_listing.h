@@ -17,7 +17,7 @@
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail::kernel {
+namespace spillway::delaunay::kernel {
 
 /// What is noted of simplices while they are listed: parts of a base case of the same names.
 template <int D>
@@ -145,4 +145,4 @@ void list_range(const typename Traits::Array& records, std::uint32_t begin, std:
   }
 }
 
-}  // namespace spillway::detail::kernel
+}  // namespace spillway::delaunay::kernel

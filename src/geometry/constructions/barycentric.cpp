@@ -5,7 +5,7 @@
 
 #include "src/geometry/predicate_stages.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 template <int D>
 std::array<double, D + 1> barycentric_coordinates(const std::array<Point<D>, D + 1>& simplex,
@@ -45,4 +45,4 @@ template std::array<double, 3> barycentric_coordinates<2>(const std::array<Point
 template std::array<double, 4> barycentric_coordinates<3>(const std::array<Point<3>, 4>&,
                                                           const Point<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

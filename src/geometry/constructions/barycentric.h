@@ -5,7 +5,7 @@
 #include "src/geometry/determinants.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The barycentric coordinates of a place in a positively oriented simplex, or on its boundary:
 /// from 0 to 1 each, their sum 1 but for rounding. Each is within 2^-36 of the true one, and
@@ -35,4 +35,4 @@ std::array<T, D + 1> barycentric_determinants(const Vectors<D, D + 1, T>& v) {
   return weights;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -5,7 +5,7 @@
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/determinants.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 template <int D>
 Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex) {
@@ -22,4 +22,4 @@ Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex) {
 template Point<2> circumcentre<2>(const std::array<Point<2>, 3>&);
 template Point<3> circumcentre<3>(const std::array<Point<3>, 4>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

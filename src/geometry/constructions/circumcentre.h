@@ -4,7 +4,7 @@
 
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The centre of the circumsphere of a simplex that is not flat, of any orientation. Along each
 /// axis it is within 2^-40 of the radius and half a unit in the last place of the true one:
@@ -13,8 +13,8 @@ template <int D>
 Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex);
 
 /// The same, rounded to the nearest double from the exact quotient; infinite where that is beyond
-/// the largest one. Throws Error if a coordinate is not finite.
+/// the largest one. Throws Failure if a coordinate is not finite.
 template <int D>
 Point<D> exact_circumcentre(const std::array<Point<D>, D + 1>& simplex);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -6,7 +6,7 @@
 
 #include "src/geometry/determinants.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 // The names are those of docs/algorithm-predicates.md ("Certified balls").
@@ -393,4 +393,4 @@ template void certify<3>(const SimplexBatch<3>&, BallBatch<3>&);
 template std::uint64_t may_meet<2>(const BallBatch<2>&, const Box<2>&, std::uint64_t);
 template std::uint64_t may_meet<3>(const BallBatch<3>&, const Box<3>&, std::uint64_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -13,7 +13,7 @@
 #include "src/geometry/point.h"
 #include "src/geometry/strict_arithmetic.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The circumsphere of a simplex with a bound on its rounding errors, kept relative to one of the
 /// simplex's own vertices so that large offsets cost no accuracy.
@@ -98,4 +98,4 @@ void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls);
 template <int D>
 std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64_t asked);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

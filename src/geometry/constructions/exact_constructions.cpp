@@ -11,7 +11,7 @@
 #include "src/geometry/determinants.h"
 #include "src/geometry/distance.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 template <int D>
@@ -103,4 +103,4 @@ template std::array<double, 3> exact_barycentric_coordinates<2>(const std::array
 template std::array<double, 4> exact_barycentric_coordinates<3>(const std::array<Point<3>, 4>&,
                                                                 const Point<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -5,7 +5,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 template <int D>
 requires SupportedDimension<D> HalfSpace<D>::HalfSpace(const std::array<Point<D>, D>& facet)
@@ -57,4 +57,4 @@ bool HalfSpace<D>::meets_exactly(const Box<D>& box) const {
 template class HalfSpace<2>;
 template class HalfSpace<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

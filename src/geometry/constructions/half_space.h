@@ -7,7 +7,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// The closed half-space beyond a facet, which is listed so that orientation(facet, p) is positive
 /// for p beyond. Its questions are answered exactly.
@@ -71,4 +71,4 @@ class HalfSpace {
   Point<D> magnitude_{};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

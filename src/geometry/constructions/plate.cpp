@@ -8,7 +8,7 @@
 // as large as what the bounds are multiplied with: 64 u are enough for all of them, and 2^-46 is
 // 128 u. Underflow is far below that, as kSmallest is added. A normal's length errs by less, too.
 
-namespace spillway::detail {
+namespace spillway::geometry {
 namespace {
 
 constexpr double kError = 0x1p-46;
@@ -106,4 +106,4 @@ template bool may_meet<3>(const CertifiedBall<3>&, const Plate<3>&);
 template bool may_meet<2>(const HalfSpace<2>&, const Plate<2>&);
 template bool may_meet<3>(const HalfSpace<3>&, const Plate<3>&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

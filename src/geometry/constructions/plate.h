@@ -5,7 +5,7 @@
 #include "src/geometry/constructions/half_space.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::geometry {
 
 /// Where some points lie that are nearly on a line or in a plane: within `radius` of `centre`, and
 /// within `thickness` of the hyperplane through it with that normal. Much less than a box around
@@ -30,4 +30,4 @@ bool may_meet(const CertifiedBall<D>& ball, const Plate<D>& plate);
 template <int D>
 bool may_meet(const HalfSpace<D>& half_space, const Plate<D>& plate);
 
-}  // namespace spillway::detail
+}  // namespace spillway::geometry

@@ -15,22 +15,22 @@
 namespace spillway {
 
 Context::Context(ContextOptions options)
-    : options_(std::move(options)), state_(std::make_shared<detail::ContextState>(options_.stop)) {
-  if (options_.threads > detail::kMostThreads) {
-    throw Error(ErrorCode::kInvalidArgument,
-                fmt::format("{} threads are more than {}", options_.threads, detail::kMostThreads));
+    : options_(std::move(options)), state_(std::make_shared<stream::ContextState>(options_.stop)) {
+  if (options_.threads > parallel::kMostThreads) {
+    throw Error(ErrorCode::kInvalidArgument, fmt::format("{} threads are more than {}",
+                                                         options_.threads, parallel::kMostThreads));
   }
-  threads_ = options_.threads > 0 ? options_.threads : detail::available_threads();
-  memory_ = options_.memory.empty() ? detail::default_memory_limit()
-                                    : detail::parse_memory_size(options_.memory.text());
+  threads_ = options_.threads > 0 ? options_.threads : parallel::available_threads();
+  memory_ = options_.memory.empty() ? runtime::default_memory_limit()
+                                    : runtime::parse_memory_size(options_.memory.text());
   if (!options_.scratch_limit.empty()) {
-    scratch_limit_ = detail::parse_memory_size(options_.scratch_limit.text());
+    scratch_limit_ = runtime::parse_memory_size(options_.scratch_limit.text());
   }
 }
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 ContextState::~ContextState() { release_threads(); }
 
@@ -65,4 +65,4 @@ std::unique_ptr<InputFile> ContextState::Files::open(const std::string& path) {
   return looked_at ? looked_at->open(path) : disk_->open(path);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -13,7 +13,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/inputs/input_kind.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What the calls of a context have in common. Safe for many threads, but for two that read one
 /// pipe.
@@ -67,4 +67,4 @@ class ContextState {
   std::weak_ptr<ScratchFolder> scratch_;  // guarded by mutex_
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 struct Run;
 }
 
@@ -24,17 +24,17 @@ class Executor {
 
   /// The files that paths stand for as one source that all processes share. As
   /// spillway::open_points().
-  virtual std::unique_ptr<detail::PointSource> open_points(const Context& context,
-                                                           const std::vector<std::string>& paths,
-                                                           detail::PointSourceOptions options) = 0;
+  virtual std::unique_ptr<stream::JoinedInputs> open_points(
+      const Context& context, const std::vector<std::string>& paths,
+      stream::JoinedInputsOptions options) = 0;
 
   /// As spillway::triangulate(), of such a source. Only the first process gets a whole report.
-  virtual Report triangulate(detail::Run& run) = 0;
+  virtual Report triangulate(stream::Run& run) = 0;
 };
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Whether this process does what is to be done once for all that share the context's runs.
 inline bool is_first_process(const Context& context) {
@@ -42,4 +42,4 @@ inline bool is_first_process(const Context& context) {
   return executor == nullptr || executor->is_first();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

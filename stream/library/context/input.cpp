@@ -11,19 +11,19 @@
 namespace spillway {
 
 InputKind kind_of_input(const std::string& path, const Context& context) {
-  const std::shared_ptr<detail::ProbedInput> input = context.state().input(path);
-  const detail::InputKind kind = detail::kind_of_input(*input);
+  const std::shared_ptr<formats::ProbedInput> input = context.state().input(path);
+  const formats::ContentKind kind = formats::kind_of_content(*input);
   input->release();
-  return kind == detail::InputKind::kPoints ? InputKind::kPoints : InputKind::kMesh;
+  return kind == formats::ContentKind::kPoints ? InputKind::kPoints : InputKind::kMesh;
 }
 
-bool stands_for_several(const std::string& path) { return detail::stands_for_several(path); }
+bool stands_for_several(const std::string& path) { return formats::names_several(path); }
 
 std::vector<std::string> expand_inputs(const std::vector<std::string>& paths,
                                        const Context& context) {
-  std::vector<std::string> files = detail::expand_inputs(paths, context.options().warning);
+  std::vector<std::string> files = formats::expand_paths(paths, context.options().warning);
   if (std::ranges::count(files, "-") > 1) {
-    throw detail::InvalidArgument("standard input can be read only once: give - once");
+    throw runtime::InvalidArgument("standard input can be read only once: give - once");
   }
   return files;
 }

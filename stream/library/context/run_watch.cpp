@@ -3,7 +3,7 @@
 #include "src/error.h"
 #include "stream/library/context/context_state.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 RunWatch::RunWatch(const Context& context)
     : options_(context.options()), mutex_(context.state().progress_mutex()) {}
@@ -70,4 +70,4 @@ void RunWatch::report(Phase& phase, Progress::Event event, std::uint64_t done,
   options_.progress({event, phase.name, phase.unit, done, fraction, phase.nested});
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "src/runtime/run_memory.h"
 #include "stream/plan/run_progress.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Tells a program how far its run is, one call at a time, and ends the run when the program asks
 /// for it. All functions may be called by many threads; what the run keeps (RunMemory) lasts as
@@ -64,4 +64,4 @@ class RunWatch : public RunProgress {
   Phase nested_{.nested = true};
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

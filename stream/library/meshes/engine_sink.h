@@ -24,7 +24,7 @@
 #include "stream/sinks/mesh_shares.h"
 #include "stream/source/source_crs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 struct MeshTarget;
 
@@ -43,10 +43,10 @@ struct MeshStart {
 /// Tells an output by what it is and its path, "" if it is none of the disk.
 void identify_product(std::string_view kind, const std::string& path, RunIdentity& identity);
 
-/// Throws Error (kInvalidArgument) for a longest edge that is not above 0.
+/// Throws Failure (kInvalidArgument) for a longest edge that is not above 0.
 void check_max_edge(const std::optional<double>& max_edge);
 
-/// Throws Error (kDegenerateInput) for what is no terrain: tetrahedra, points without z.
+/// Throws Failure (kDegenerateInput) for what is no terrain: tetrahedra, points without z.
 void refuse_tetrahedra(const MeshStart& start);
 void refuse_without_heights(const MeshStart& start);
 
@@ -58,7 +58,7 @@ void tell_lost_layers(const VectorFormat& format, const std::string& path, const
 /// after begin_again() lives as long as it does.
 class EngineSink : public RunSink {
  public:
-  /// Returns where blocks go. That lives as long as the sink. Throws Error(kInvalidArgument) if it
+  /// Returns where blocks go. That lives as long as the sink. Throws Failure(kInvalidArgument) if it
   /// was called before.
   BlockSink& start(const MeshStart& start) {
     if (std::exchange(is_used_, true)) {
@@ -75,7 +75,7 @@ class EngineSink : public RunSink {
   [[nodiscard]] virtual AttributeChoice wanted_attributes(bool /*triangulated*/) const {
     return {};
   }
-  /// Throws Error(kInvalidArgument) for one that was asked for by name and is not there, or that it
+  /// Throws Failure(kInvalidArgument) for one that was asked for by name and is not there, or that it
   /// does not hold.
   virtual void check_attributes(const AttributeLayout& /*there*/) const {}
   /// The names of those that would come if it held them.
@@ -137,7 +137,7 @@ class OwnSink : public PublicSink, public EngineSink {
     return names_of(wanted_attributes(true));
   }
 
-  void begin(const spillway::MeshHeader& header) final {
+  void begin(const MeshHeader& header) final {
     ProgramBlocks program(header);
     const MeshStreamHeader& stream = program.header();
     check_attributes(stream.attributes);
@@ -151,9 +151,9 @@ class OwnSink : public PublicSink, public EngineSink {
     program_ = std::move(program);
   }
 
-  void write(const spillway::MeshBlock& block) final {
+  void write(const MeshBlock& block) final {
     BlockSink& blocks = begun();
-    MeshBlock own = program_->next(block);
+    MeshStreamBlock own = program_->next(block);
     blocks.absorb(own);
     blocks.write(std::move(own));
   }
@@ -185,4 +185,4 @@ class OwnSink : public PublicSink, public EngineSink {
   std::optional<ProgramBlocks> program_;  ///< that calls it, between begin and finish
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -16,7 +16,7 @@
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/attribute_records.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts) {
   for (const MeshFormat* const format : mesh_formats()) {
@@ -71,7 +71,7 @@ void MeshFile::check_attributes(const AttributeLayout& there) const {
   refuse_unknown_names(*attributes_, there);
   const AttributeChoice named{.names = attribute_choice(*attributes_).names};
   const std::vector<std::string> lost =
-      detail::lost_attributes(*target_.format, chosen(there, named));
+      formats::lost_attributes(*target_.format, chosen(there, named));
   if (lost.empty()) return;
   const auto hold_all = [](const MeshFormat& format) {
     return format.held_attributes == HeldAttributes::kAll;
@@ -83,7 +83,7 @@ void MeshFile::check_attributes(const AttributeLayout& there) const {
 
 std::vector<std::string> MeshFile::lost_attributes(const AttributeLayout& there,
                                                    bool triangulated) const {
-  return detail::lost_attributes(*target_.format, chosen(there, asked_attributes(triangulated)));
+  return formats::lost_attributes(*target_.format, chosen(there, asked_attributes(triangulated)));
 }
 
 BlockSink& MeshFile::open(const MeshStart& start) {
@@ -125,13 +125,13 @@ void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/
   report.write_seconds = watch.end(report.mesh.simplices);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<MeshSink> create_mesh(const std::string& path, const MeshFileOptions& options,
                                       const Context& context) {
-  return std::make_unique<detail::MeshFile>(path, options, context);
+  return std::make_unique<stream::MeshFile>(path, options, context);
 }
 
 }  // namespace spillway

@@ -10,7 +10,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/library/meshes/engine_sink.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Where a mesh goes.
 struct MeshTarget {
@@ -27,7 +27,7 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
 /// A mesh file in the making.
 class MeshFile final : public OwnSink<spillway::MeshSink> {
  public:
-  /// Throws Error(kInvalidArgument) as mesh_target(), and for parts of one process.
+  /// Throws Failure(kInvalidArgument) as mesh_target(), and for parts of one process.
   MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context);
 
   [[nodiscard]] bool is_product() const override { return false; }
@@ -63,4 +63,4 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   const char* simplices_ = "";  ///< what they are called
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

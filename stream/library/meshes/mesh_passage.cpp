@@ -7,11 +7,11 @@
 #include "formats/points/attributes/record_selection.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 struct Slot {
-  MeshBlock block;
+  MeshStreamBlock block;
   std::size_t simplices = 0;
 };
 
@@ -20,7 +20,7 @@ struct Slot {
 VertexExtent find_vertices(MeshStreamReader& reader, RunWatch& watch) {
   VertexExtent found;
   watch.begin("extent", "vertices");
-  for (MeshBlock block; reader.read(block);) {
+  for (MeshStreamBlock block; reader.read(block);) {
     for (const LatticePoint& vertex : block.vertices) {
       found.box.expand(Point<2>{vertex[0], vertex[1]});
     }
@@ -37,7 +37,7 @@ std::uint64_t pass_mesh(MeshStreamReader& reader, const AttributeLayout& kept, B
   std::uint64_t simplices = 0;
   std::vector<Slot> slots(threads + 1);
   const auto source = [&](std::size_t slot) {
-    MeshBlock& block = slots[slot].block;
+    MeshStreamBlock& block = slots[slot].block;
     block.clear();
     const bool more = reader.read(block);
     slots[slot].simplices = block.corners.size() / corners;
@@ -47,7 +47,7 @@ std::uint64_t pass_mesh(MeshStreamReader& reader, const AttributeLayout& kept, B
       {.in_order = false,
        .work =
            [&](std::size_t slot) {
-             MeshBlock& block = slots[slot].block;
+             MeshStreamBlock& block = slots[slot].block;
              selection.apply(block.attributes, block.vertices.size());
              blocks.absorb(block);
            }},
@@ -59,4 +59,4 @@ std::uint64_t pass_mesh(MeshStreamReader& reader, const AttributeLayout& kept, B
   return simplices;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 #include "src/geometry/box.h"
 #include "stream/library/context/run_watch.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The box around the vertices of a mesh of triangles in x and y, as their blocks give them, and
 /// their number.
@@ -23,4 +23,4 @@ VertexExtent find_vertices(MeshStreamReader& reader, RunWatch& watch);
 std::uint64_t pass_mesh(MeshStreamReader& reader, const AttributeLayout& kept, BlockSink& blocks,
                         RunWatch& watch, unsigned threads);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

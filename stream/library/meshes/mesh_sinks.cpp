@@ -59,7 +59,7 @@ void MeshInMemory::finish(const MeshTotals& totals) { totals_ = totals; }
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 void tell_lost_layers(const VectorFormat& format, const std::string& path, const Context& context) {
   if (!context.options().warning) return;
@@ -79,16 +79,17 @@ void check_max_edge(const std::optional<double>& max_edge) {
 
 void refuse_tetrahedra(const MeshStart& start) {
   if (start.header.dimension == 2) return;
-  throw Error(start.name + ": a terrain is a mesh of triangles, and this one is of tetrahedra",
-              ErrorCode::kDegenerateInput, {.file = start.name});
+  throw Failure(start.name + ": a terrain is a mesh of triangles, and this one is of tetrahedra",
+                ErrorCode::kDegenerateInput, {.file = start.name});
 }
 
 void refuse_without_heights(const MeshStart& start) {
   if (start.has_heights) return;
-  throw Error(start.name +
-                  ": the points have no z: name the column of heights z, or give points that have "
-                  "heights",
-              ErrorCode::kDegenerateInput, {.file = start.name});
+  throw Failure(
+      start.name +
+          ": the points have no z: name the column of heights z, or give points that have "
+          "heights",
+      ErrorCode::kDegenerateInput, {.file = start.name});
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -16,13 +16,13 @@
 #include "stream/library/meshes/whole_mesh.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-CheckReport count_stream(MeshStreamReader& reader, const CheckOptions& options,
+CheckReport count_stream(MeshStreamReader& reader, const CheckerOptions& options,
                          const std::string& path) {
   CheckReport found = count_mesh_stream(reader, options);
   if (found.fault_count == 0) return found;
-  throw Error(
+  throw Failure(
       fmt::format("{}: {}; the file is corrupt, write it again", path, found.faults.front()),
       ErrorCode::kBadInput, {.file = path});
 }
@@ -38,7 +38,7 @@ OpenedMesh::OpenedMesh(std::string path, const MeshOptions& options, const Conte
     is_stream_ = format_->is_stream();
     return;
   }
-  is_stream_ = input_->is_pipe() || kind_of_input(*input_) == detail::InputKind::kMeshStream;
+  is_stream_ = input_->is_pipe() || kind_of_content(*input_) == formats::ContentKind::kMeshStream;
   if (is_stream_) format_ = &mesh_stream_format(input_->source(), path_);
   input_->release();
 }
@@ -116,7 +116,7 @@ void OpenedMesh::check_totals(RunWatch& watch) {
   }
   keep_copy(watch);
   const std::unique_ptr<MeshStreamReader> reader = open_stream();
-  CheckOptions options;
+  CheckerOptions options;
   options.threads = context_.threads();
   options.progress = [&](std::uint64_t simplices, std::optional<double> fraction) {
     watch.tell(simplices, fraction);
@@ -149,7 +149,7 @@ MeshStreamReader& OpenedMesh::public_reader() {
   return reader(watch, true);
 }
 
-spillway::MeshHeader OpenedMesh::header() const {
+MeshHeader OpenedMesh::header() const {
   if (reader_) return public_header(reader_->header());
   if (is_stream_) return public_header(stream().header());
   RunWatch watch(context_);
@@ -160,10 +160,10 @@ spillway::MeshHeader OpenedMesh::header() const {
           .lattice = public_lattice(stream_lattice(mesh))};
 }
 
-bool OpenedMesh::read(spillway::MeshBlock& block) {
+bool OpenedMesh::read(MeshBlock& block) {
   if (!std::exchange(is_reading_, true)) take();
   MeshStreamReader& reader = public_reader();
-  MeshBlock own;
+  MeshStreamBlock own;
   if (!reader.read(own)) return false;
   const std::uint64_t first = read_;
   read_ += own.vertices.size();
@@ -173,13 +173,13 @@ bool OpenedMesh::read(spillway::MeshBlock& block) {
 
 spillway::MeshTotals OpenedMesh::totals() { return public_reader().totals(); }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<MeshSource> open_mesh(const std::string& path, const MeshOptions& options,
                                       const Context& context) {
-  return std::make_unique<detail::OpenedMesh>(path, options, context);
+  return std::make_unique<stream::OpenedMesh>(path, options, context);
 }
 
 }  // namespace spillway

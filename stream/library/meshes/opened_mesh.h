@@ -17,10 +17,10 @@
 #include "stream/library/meshes/mesh_passage.h"
 #include "stream/source/input_crs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// What count_mesh_stream() finds. Throws Error with this name for totals that are wrong.
-CheckReport count_stream(MeshStreamReader& reader, const CheckOptions& options,
+/// What count_mesh_stream() finds. Throws Failure with this name for totals that are wrong.
+CheckReport count_stream(MeshStreamReader& reader, const CheckerOptions& options,
                          const std::string& path);
 
 /// A mesh file that is read.
@@ -29,11 +29,11 @@ class OpenedMesh final : public spillway::MeshSource {
   OpenedMesh(std::string path, const MeshOptions& options, const Context& context);
   ~OpenedMesh() override;
 
-  [[nodiscard]] spillway::MeshHeader header() const override;
-  bool read(spillway::MeshBlock& block) override;
+  [[nodiscard]] MeshHeader header() const override;
+  bool read(MeshBlock& block) override;
   [[nodiscard]] spillway::MeshTotals totals() override;
 
-  /// Notes that the mesh is being read. Throws Error(kInvalidArgument) if it was before.
+  /// Notes that the mesh is being read. Throws Failure(kInvalidArgument) if it was before.
   void take();
 
   /// What the caller says of the coordinate system.
@@ -45,9 +45,9 @@ class OpenedMesh final : public spillway::MeshSource {
   [[nodiscard]] bool is_stream() const { return is_stream_; }
 
   /// Opens the mesh block by block. What is no stream, or does not tell all totals though these are
-  /// wanted, is read as a whole first, as phase "read mesh". Throws Error.
+  /// wanted, is read as a whole first, as phase "read mesh". Throws Failure.
   MeshStreamReader& reader(RunWatch& watch, bool all_totals);
-  /// A stream block by block, whatever totals it tells. Throws Error.
+  /// A stream block by block, whatever totals it tells. Throws Failure.
   MeshStreamReader& stream() const;
   /// The whole mesh of another format, which is read first, as phase "read mesh".
   const Mesh& whole(RunWatch& watch) const;
@@ -59,7 +59,7 @@ class OpenedMesh final : public spillway::MeshSource {
   /// file.
   VertexExtent find_extent(RunWatch& watch);
 
-  /// Throws Error if the totals are not those of what the mesh holds, or if no totals can tell
+  /// Throws Failure if the totals are not those of what the mesh holds, or if no totals can tell
   /// what it holds. A stream is read once more for that, as by find_extent().
   void check_totals(RunWatch& watch);
 
@@ -88,4 +88,4 @@ class OpenedMesh final : public spillway::MeshSource {
   std::uint64_t read_ = 0;   ///< vertices that read() has given
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -11,7 +11,7 @@
 #include "src/error.h"
 #include "stream/library/meshes/public_values.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A program's own mesh, as the engine reads it.
 class ProgramMesh final : public MeshStreamReader {
@@ -20,8 +20,8 @@ class ProgramMesh final : public MeshStreamReader {
   explicit ProgramMesh(spillway::MeshSource& source) : source_(source), blocks_(source.header()) {}
 
   [[nodiscard]] const MeshStreamHeader& header() const override { return blocks_.header(); }
-  bool read(MeshBlock& block) override {
-    spillway::MeshBlock next;
+  bool read(MeshStreamBlock& block) override {
+    MeshBlock next;
     if (source_.read(next)) {
       block = blocks_.next(next);
       return true;
@@ -38,7 +38,7 @@ class ProgramMesh final : public MeshStreamReader {
   [[nodiscard]] std::optional<double> fraction_read() const override { return std::nullopt; }
 
  private:
-  /// What is not known of a mesh is 0. Throws Error(kInvalidArgument) for another number.
+  /// What is not known of a mesh is 0. Throws Failure(kInvalidArgument) for another number.
   static void fill_in(std::uint64_t& told, std::uint64_t came, const char* what) {
     if (told != 0 && told != came) {
       throw InvalidArgument(
@@ -52,4 +52,4 @@ class ProgramMesh final : public MeshStreamReader {
   MeshTotals totals_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

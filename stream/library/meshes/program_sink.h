@@ -6,7 +6,7 @@
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/points/attribute_records.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A program's sink, as the engine writes to it.
 class ProgramSink final : public EngineSink, private BlockSink {
@@ -33,7 +33,7 @@ class ProgramSink final : public EngineSink, private BlockSink {
   }
 
  private:
-  void write(MeshBlock&& block) override {
+  void write(MeshStreamBlock&& block) override {
     const std::uint64_t first = vertices_;
     vertices_ += block.vertices.size();
     sink_.write(public_block(header_, std::move(block), first));
@@ -45,4 +45,4 @@ class ProgramSink final : public EngineSink, private BlockSink {
   std::uint64_t vertices_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -15,13 +15,13 @@
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The short numbers of a block's vertices: its own come first, then those that it imports.
 class ShortNumbers {
  public:
-  explicit ShortNumbers(const spillway::MeshBlock& block)
+  explicit ShortNumbers(const MeshBlock& block)
       : first_(block.first_vertex), own_(block.vertices.size()) {}
 
   std::uint32_t of(std::uint64_t vertex) {
@@ -47,8 +47,8 @@ class ShortNumbers {
 
 }  // namespace
 
-spillway::MeshHeader public_header(const MeshStreamHeader& header) {
-  spillway::MeshHeader told;
+MeshHeader public_header(const MeshStreamHeader& header) {
+  MeshHeader told;
   told.dimension = header.dimension;
   told.has_input_index = header.has_input_index;
   told.points = header.points;
@@ -61,7 +61,7 @@ spillway::MeshHeader public_header(const MeshStreamHeader& header) {
   return told;
 }
 
-MeshStreamHeader stream_header(const spillway::MeshHeader& header) {
+MeshStreamHeader stream_header(const MeshHeader& header) {
   MeshStreamHeader stream;
   stream.dimension = header.dimension;
   stream.has_input_index = header.has_input_index;
@@ -78,9 +78,9 @@ std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header) {
   return nearest_integers(*header.lattice, *header.extent);
 }
 
-spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
-                                 std::uint64_t first_vertex) {
-  spillway::MeshBlock told;
+MeshBlock public_block(const MeshStreamHeader& header, MeshStreamBlock&& block,
+                       std::uint64_t first_vertex) {
+  MeshBlock told;
   told.first_vertex = first_vertex;
   append_stream_numbers(block, first_vertex, told.corners);
   told.finalized.reserve(block.finalized.size());
@@ -98,14 +98,14 @@ spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& blo
   return told;
 }
 
-ProgramBlocks::ProgramBlocks(const spillway::MeshHeader& header)
+ProgramBlocks::ProgramBlocks(const MeshHeader& header)
     : header_(stream_header(header)), told_(header_.attributes) {
   if (header.dimension != 2 && header.dimension != 3) {
     throw InvalidArgument(fmt::format("a mesh has 2 or 3 dimensions, not {}", header.dimension));
   }
 }
 
-void ProgramBlocks::check(const spillway::MeshBlock& block) const {
+void ProgramBlocks::check(const MeshBlock& block) const {
   if (block.vertices.size() + block.corners.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw InvalidArgument("a block of a mesh has too many vertices and corners: give smaller ones");
   }
@@ -156,7 +156,7 @@ void ProgramBlocks::check_inside(const spillway::Point<3>& vertex, std::uint64_t
   }
 }
 
-std::vector<LatticePoint> ProgramBlocks::vertices_of(const spillway::MeshBlock& block) const {
+std::vector<LatticePoint> ProgramBlocks::vertices_of(const MeshBlock& block) const {
   if (!header_.lattice) return points_without_lattice(block.vertices);
   std::vector<LatticePoint> vertices;
   vertices.reserve(block.vertices.size());
@@ -173,7 +173,7 @@ std::vector<LatticePoint> ProgramBlocks::vertices_of(const spillway::MeshBlock& 
 
 /// In the plane z may lie between the steps.
 LatticePoint ProgramBlocks::found(const spillway::Point<3>& vertex, std::uint64_t number) const {
-  const Lattice& lattice = *header_.lattice;
+  const IntegerLattice& lattice = *header_.lattice;
   LatticePoint place(vertex);
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == 2 && header_.dimension == 2) {
@@ -208,10 +208,10 @@ void ProgramBlocks::check_told(const Point<3>& told, const spillway::Point<3>& v
   }
 }
 
-MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
+MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   check(block);
   ShortNumbers numbers(block);
-  MeshBlock stream;
+  MeshStreamBlock stream;
   stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
   stream.attributes = records_of(block.attributes, header_.attributes, 0, block.vertices.size());
@@ -233,4 +233,4 @@ MeshBlock ProgramBlocks::next(const spillway::MeshBlock& block) {
   return stream;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

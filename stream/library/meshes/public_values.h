@@ -10,40 +10,40 @@
 #include "formats/meshes/common/import_check.h"
 #include "formats/meshes/common/mesh_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-spillway::MeshHeader public_header(const MeshStreamHeader& header);
-/// Throws Error(kInvalidArgument) for an extent that cannot be.
-MeshStreamHeader stream_header(const spillway::MeshHeader& header);
+MeshHeader public_header(const MeshStreamHeader& header);
+/// Throws Failure(kInvalidArgument) for an extent that cannot be.
+MeshStreamHeader stream_header(const MeshHeader& header);
 
 /// The extent that a header tells, in the coordinates of its blocks.
 std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header);
 
 /// A block in output coordinates and stream numbers, where `first_vertex` vertices come before it.
-spillway::MeshBlock public_block(const MeshStreamHeader& header, MeshBlock&& block,
-                                 std::uint64_t first_vertex);
+MeshBlock public_block(const MeshStreamHeader& header, MeshStreamBlock&& block,
+                       std::uint64_t first_vertex);
 
 /// The blocks of a program's mesh as those of a stream.
 class ProgramBlocks {
  public:
-  /// Throws Error(kInvalidArgument) for a header that cannot be.
-  explicit ProgramBlocks(const spillway::MeshHeader& header);
+  /// Throws Failure(kInvalidArgument) for a header that cannot be.
+  explicit ProgramBlocks(const MeshHeader& header);
 
   /// From now on vertices have these attributes alone, which are some of the header's.
   void keep(const AttributeLayout& attributes) { header_.attributes = attributes; }
 
-  /// Throws Error(kInvalidArgument) for blocks out of their order, coordinates that are not finite,
+  /// Throws Failure(kInvalidArgument) for blocks out of their order, coordinates that are not finite,
   /// simplices of another dimension, and vertices that have not come or come no more.
-  MeshBlock next(const spillway::MeshBlock& block);
+  MeshStreamBlock next(const MeshBlock& block);
 
   [[nodiscard]] const MeshStreamHeader& header() const { return header_; }
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
   [[nodiscard]] std::uint64_t simplices() const { return simplices_; }
 
  private:
-  void check(const spillway::MeshBlock& block) const;
+  void check(const MeshBlock& block) const;
   void check_inside(const spillway::Point<3>& vertex, std::uint64_t number) const;
-  [[nodiscard]] std::vector<LatticePoint> vertices_of(const spillway::MeshBlock& block) const;
+  [[nodiscard]] std::vector<LatticePoint> vertices_of(const MeshBlock& block) const;
   [[nodiscard]] LatticePoint found(const spillway::Point<3>& vertex, std::uint64_t number) const;
   void check_told(const Point<3>& told, const spillway::Point<3>& vertex,
                   std::uint64_t number) const;
@@ -55,4 +55,4 @@ class ProgramBlocks {
   std::uint64_t simplices_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

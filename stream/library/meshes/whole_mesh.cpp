@@ -16,7 +16,7 @@
 #include "src/error.h"
 #include "stream/checker/checker.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// How many facets one simplex has, and one that more than two have, if there is any.
@@ -60,7 +60,8 @@ FacetCounts facets_of(const Mesh& mesh) {
 
 /// The vertices as a stream with this lattice has them. In the plane heights need not be on it;
 /// then they have the identity map.
-std::vector<LatticePoint> stream_vertices(const Mesh& mesh, std::optional<Lattice>& lattice) {
+std::vector<LatticePoint> stream_vertices(const Mesh& mesh,
+                                          std::optional<IntegerLattice>& lattice) {
   if (!lattice) return vertices_without_lattice(mesh);
   if (auto vertices = vertices_on_lattice(mesh, *lattice, 3)) return *std::move(vertices);
   if (mesh.header.dimension == 2) {
@@ -74,14 +75,14 @@ std::vector<LatticePoint> stream_vertices(const Mesh& mesh, std::optional<Lattic
 
 /// The mesh as one block, which keeps its simplices together as the file has them; with attributes
 /// as several, where they might make it larger than a block can be.
-std::vector<MeshBlock> blocks_of(MeshBlock whole, std::size_t corners,
-                                 const AttributeLayout& attributes) {
+std::vector<MeshStreamBlock> blocks_of(MeshStreamBlock whole, std::size_t corners,
+                                       const AttributeLayout& attributes) {
   constexpr std::size_t kMostVertices = 65536;  // of one of several
   // Columns take at most so much of a vertex, and of a corner.
   const std::size_t vertex = 5 * sizeof(double) + 2 * attributes.record_size();
   const std::size_t corner = 2 * sizeof(std::uint32_t);
   const std::size_t most = whole.vertices.size() * vertex + whole.corners.size() * corner;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
   if (attributes.empty() || most <= kLargestBlock) {
     blocks.push_back(std::move(whole));
     return blocks;
@@ -99,8 +100,8 @@ MeshTotals totals_of(const Mesh& mesh) {
 
 }  // namespace
 
-std::optional<Lattice> stream_lattice(const Mesh& mesh) {
-  std::optional<Lattice> lattice = mesh.header.lattice;
+std::optional<IntegerLattice> stream_lattice(const Mesh& mesh) {
+  std::optional<IntegerLattice> lattice = mesh.header.lattice;
   stream_vertices(mesh, lattice);
   return lattice;
 }
@@ -116,17 +117,18 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
     crowded_ = facets.crowded;
   }
   if (mesh.vertices.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(fmt::format("{}: {} vertices are too many for a mesh that is not a stream; make it "
-                            "as spm from the points",
-                            name, mesh.vertices.size()),
-                ErrorCode::kTooLarge, {.file = name});
+    throw Failure(
+        fmt::format("{}: {} vertices are too many for a mesh that is not a stream; make it "
+                    "as spm from the points",
+                    name, mesh.vertices.size()),
+        ErrorCode::kTooLarge, {.file = name});
   }
   header_.dimension = mesh.header.dimension;
   header_.has_input_index = mesh.header.has_input_index;
   header_.lattice = mesh.header.lattice;
   header_.crs = mesh.header.crs;
   header_.attributes = mesh.header.attributes;
-  MeshBlock block;
+  MeshStreamBlock block;
   block.vertices = stream_vertices(mesh, header_.lattice);
   for (const LatticePoint& vertex : block.vertices) {
     extent_.expand(Point<2>{vertex[0], vertex[1]});
@@ -142,7 +144,7 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
 void WholeMesh::refuse_crowded_facet(const std::string& name) const {
   if (crowded_.empty()) return;
   const bool plane = header_.dimension == 2;
-  throw Error(
+  throw Failure(
       fmt::format("{}: more than two {} have the {} of the vertices {} (counted from 0), which spm "
                   "cannot hold; remove what is there twice",
                   name, plane ? "triangles" : "tetrahedra", plane ? "edge" : "facet",
@@ -150,10 +152,10 @@ void WholeMesh::refuse_crowded_facet(const std::string& name) const {
       ErrorCode::kBadInput, {.file = name});
 }
 
-bool WholeMesh::read(MeshBlock& block) {
+bool WholeMesh::read(MeshStreamBlock& block) {
   if (read_ == blocks_.size()) return false;
   block = std::move(blocks_[read_++]);
   return true;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

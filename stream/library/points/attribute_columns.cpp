@@ -15,14 +15,14 @@
 namespace spillway {
 namespace {
 
-using detail::InvalidArgument;
+using runtime::InvalidArgument;
 
 /// No file has more, and sizes in bytes do not overflow.
 constexpr std::size_t kMostElements = 1'000'000;
 
 void check(const Attribute& attribute) {
   if (attribute.name.empty()) throw InvalidArgument("an attribute of points has no name");
-  detail::check_choice(attribute.type, NumberType::kFloat64, "type of numbers");
+  stream::check_choice(attribute.type, NumberType::kFloat64, "type of numbers");
   if (attribute.elements == 0 || attribute.elements > kMostElements) {
     throw InvalidArgument(fmt::format("attribute \"{}\" has {} elements: give 1 to {}",
                                       attribute.name, attribute.elements, kMostElements));
@@ -36,12 +36,12 @@ void check(const Attribute& attribute) {
 }
 
 std::size_t record_size(const Attribute& attribute) {
-  return attribute.elements * detail::size_of(attribute.type);
+  return attribute.elements * formats::size_of(attribute.type);
 }
 
 }  // namespace
 
-const char* to_string(NumberType type) noexcept { return detail::name_of(type).data(); }
+const char* to_string(NumberType type) noexcept { return formats::name_of(type).data(); }
 
 AttributeColumns::AttributeColumns(std::vector<Attribute> attributes, std::size_t points)
     : attributes_(std::move(attributes)), columns_(attributes_.size()) {
@@ -60,15 +60,15 @@ std::size_t AttributeColumns::place_of(std::string_view name) const {
   if (found != attributes_.end()) {
     return static_cast<std::size_t>(found - attributes_.begin());
   }
-  throw detail::unknown_attribute(name, attributes_);
+  throw stream::unknown_attribute(name, attributes_);
 }
 
 void AttributeColumns::check_type(std::size_t place, NumberType type) const {
   const Attribute& attribute = attributes_[place];
   if (attribute.type == type) return;
   throw InvalidArgument(fmt::format("attribute \"{}\" has numbers of type {}, not {}",
-                                    attribute.name, detail::name_of(attribute.type),
-                                    detail::name_of(type)));
+                                    attribute.name, formats::name_of(attribute.type),
+                                    formats::name_of(type)));
 }
 
 std::span<const std::byte> AttributeColumns::bytes(std::string_view name) const {
@@ -95,11 +95,11 @@ std::vector<double> AttributeColumns::meant(std::string_view name) const {
   const std::size_t place = place_of(name);
   const Attribute& attribute = attributes_[place];
   const std::vector<std::byte>& column = columns_[place];
-  return detail::with_number_type(attribute.type, [&](auto number) {
+  return formats::with_number_type(attribute.type, [&](auto number) {
     using T = decltype(number);
     std::vector<double> meant(column.size() / sizeof(T));
     for (std::size_t i = 0; i < meant.size(); ++i) {
-      const auto stored = static_cast<double>(detail::load<T>(column.data() + i * sizeof(T)));
+      const auto stored = static_cast<double>(formats::load<T>(column.data() + i * sizeof(T)));
       meant[i] = stored * attribute.scale + attribute.offset;
     }
     return meant;

@@ -8,7 +8,7 @@
 
 #include "formats/points/attributes/attribute_names.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Moves items of `size` bytes between places that are `from_step` and `to_step` bytes apart.
@@ -100,4 +100,4 @@ void refuse_unknown_names(const std::vector<std::string>& names, const Attribute
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

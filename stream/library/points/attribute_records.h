@@ -13,15 +13,15 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-/// The attributes that a program tells of. Throws Error(kInvalidArgument) for those that cannot be.
+/// The attributes that a program tells of. Throws Failure(kInvalidArgument) for those that cannot be.
 AttributeLayout checked_attributes(const std::vector<Attribute>& attributes);
 
 /// The numbers of records that have this layout.
 AttributeColumns columns_of(const AttributeLayout& layout, std::span<const std::byte> records);
 
-/// Throws Error(kInvalidArgument) unless `columns` of a block with so many points (or what `points`
+/// Throws Failure(kInvalidArgument) unless `columns` of a block with so many points (or what `points`
 /// calls them: "vertices") have the attributes that its header has told.
 void check_columns(const AttributeColumns& columns, const AttributeLayout& told, std::size_t size,
                    const char* points);
@@ -42,4 +42,4 @@ InvalidArgument unknown_attribute(std::string_view name, std::span<const Attribu
 /// Throws it for a chosen name that no point has, if `offered` is what they have.
 void refuse_unknown_names(const std::vector<std::string>& names, const AttributeLayout& offered);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,14 +12,14 @@
 #include "stream/source/point_stream.h"
 #include "stream/source/source_crs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-class PointSource;
+class JoinedInputs;
 
 /// The points of a run, and what is known of them before it.
 struct RunPoints {
   PointStream* stream = nullptr;
-  detail::PointSource* files = nullptr;    ///< the same, if it is of files, which ranks can share
+  stream::JoinedInputs* files = nullptr;   ///< the same, if it is of files, which ranks can share
   int dimension = 0;                       ///< that they were opened for; 0: any
   bool has_heights = true;                 ///< there is z
   bool heights_on_lattice = true;          ///< if the stream has a lattice, z is on it, too
@@ -63,7 +63,7 @@ class EnginePoints {
   AttributeChoice choice_;
 };
 
-/// Throws Error(kInvalidArgument) if a run has taken the points of a source before.
+/// Throws Failure(kInvalidArgument) if a run has taken the points of a source before.
 void refuse_taken_points(bool is_taken);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 
 #include "stream/library/points/opened_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 std::string text_of(const Returns& returns) {
@@ -50,4 +50,4 @@ bool OpenedPoints::identify(RunIdentity& identity) const {
   return true;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

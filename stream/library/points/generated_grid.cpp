@@ -23,7 +23,7 @@
 #include "stream/library/points/grid_names.h"
 #include "stream/library/points/point_file.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::size_t kMostFiles = 10'000;
@@ -238,7 +238,7 @@ class GridWriter {
   /// What the header of a tile's file tells.
   static RunPoints points_of(const RunPoints& run, const Tile& tile) {
     RunPoints of_tile = run;
-    const std::optional<Lattice>& lattice = run.stream->lattice();
+    const std::optional<IntegerLattice>& lattice = run.stream->lattice();
     of_tile.records = tile.points;
     of_tile.extent.emplace();
     of_tile.extent->expand(in_world(lattice, LatticePoint(tile.box.lo)));
@@ -256,13 +256,13 @@ class GridWriter {
 };
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 GridReport generate_grid(const GenerateOptions& points, const std::string& path,
                          const GridOptions& grid, const Context& context) {
-  return detail::GridWriter(points, path, grid, context).run();
+  return stream::GridWriter(points, path, grid, context).run();
 }
 
 }  // namespace spillway

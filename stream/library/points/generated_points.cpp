@@ -6,7 +6,7 @@
 
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::uint64_t kBlockPoints = 65536;
@@ -75,14 +75,14 @@ std::optional<double> GeneratedPoints::fraction_read() const {
   return static_cast<double>(made_) / static_cast<double>(count_);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
-std::vector<std::string> point_families() { return detail::family_names(); }
+std::vector<std::string> point_families() { return generators::family_names(); }
 
 std::unique_ptr<PointSource> generate_points(const GenerateOptions& options) {
-  return std::make_unique<detail::GeneratedPoints>(options);
+  return std::make_unique<stream::GeneratedPoints>(options);
 }
 
 }  // namespace spillway

@@ -12,14 +12,12 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/source/point_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points that are made while they are read, in blocks of 65,536.
-class GeneratedPoints final : public spillway::PointSource,
-                              public EnginePoints,
-                              private PointStream {
+class GeneratedPoints final : public PointSource, public EnginePoints, private PointStream {
  public:
-  /// Throws Error(kInvalidArgument) for options that cannot be.
+  /// Throws Failure(kInvalidArgument) for options that cannot be.
   explicit GeneratedPoints(const GenerateOptions& options);
 
   [[nodiscard]] PointsHeader header() const override;
@@ -33,7 +31,7 @@ class GeneratedPoints final : public spillway::PointSource,
 
   bool fetch(SourcePiece& piece) override;
   void decode(SourcePiece& piece, PointBlock& block) override;
-  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override { return lattice_; }
   [[nodiscard]] std::optional<std::uint64_t> expected() const override { return count_; }
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] PointCounts counts() const override { return {.read = made_}; }
@@ -47,9 +45,9 @@ class GeneratedPoints final : public spillway::PointSource,
   bool has_heights_;
   std::unique_ptr<PointGenerator> generator_;
   std::vector<Point<3>> numbers_;  ///< of the points that were made last
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   std::optional<Box<3>> extent_;  ///< not known
   std::atomic<std::uint64_t> made_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ void GridNames::refuse_existing() const {
                                 (folder / first).string()));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

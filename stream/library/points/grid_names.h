@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <string>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// The names of a survey's files: a path with '#' in its name, for which each file has its column
 /// and row.
@@ -31,4 +33,4 @@ class GridNames {
   std::size_t row_digits_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

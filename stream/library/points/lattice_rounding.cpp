@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr double kLeast = std::numeric_limits<std::int32_t>::min();
@@ -30,9 +30,9 @@ double round_offset(double lo, double hi, double scale) {
 
 }  // namespace
 
-Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>& source,
-                       const Box<3>& extent) {
-  Lattice lattice;
+IntegerLattice chosen_lattice(const LatticeChoice& choice,
+                              const std::optional<IntegerLattice>& source, const Box<3>& extent) {
+  IntegerLattice lattice;
   const bool degrees = may_be_degrees(extent);
   for (int axis = 0; axis < 3; ++axis) {
     const auto of_axis = [&](const std::vector<double>& values) {
@@ -56,8 +56,8 @@ Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>
   return lattice;
 }
 
-LatticeRounding::LatticeRounding(std::string output, const Lattice& target,
-                                 const std::optional<Lattice>& source, const Box<3>& extent)
+LatticeRounding::LatticeRounding(std::string output, const IntegerLattice& target,
+                                 const std::optional<IntegerLattice>& source, const Box<3>& extent)
     : output_(std::move(output)), target_(target), source_(source) {
   // What 32 bits do not reach is told by its point.
   Box<3> integers = integers_of(target, extent);
@@ -100,4 +100,4 @@ void LatticeRounding::round(std::span<LatticePoint> points, std::span<const std:
   check_target(integers);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -11,7 +11,7 @@
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The lattice that points are to be rounded to.
 struct LatticeChoice {
@@ -25,19 +25,19 @@ struct LatticeChoice {
 /// have), if there is one; else the scale is 1e-7 for x and y that can be degrees and 0.001
 /// otherwise, and the offset 0 where the points of `extent` are below 2^30 steps from it then, so
 /// that there is room in 32 bits for points beyond, otherwise a round number near their centre.
-Lattice chosen_lattice(const LatticeChoice& choice, const std::optional<Lattice>& source,
-                       const Box<3>& extent);
+IntegerLattice chosen_lattice(const LatticeChoice& choice,
+                              const std::optional<IntegerLattice>& source, const Box<3>& extent);
 
 /// Rounds points to the nearest ones of a lattice, and remembers how far they moved.
 class LatticeRounding {
  public:
   /// Points come as integers of `source`, if that is set, else in output coordinates. `output` is
   /// where they go, for messages, and `extent` a box in output coordinates that has some of them,
-  /// or none. Throws Error if `target` does not keep neighbours in it apart.
-  LatticeRounding(std::string output, const Lattice& target, const std::optional<Lattice>& source,
-                  const Box<3>& extent);
+  /// or none. Throws Failure if `target` does not keep neighbours in it apart.
+  LatticeRounding(std::string output, const IntegerLattice& target,
+                  const std::optional<IntegerLattice>& source, const Box<3>& extent);
 
-  /// Replaces points by integers of the target lattice. Throws Error that names the first point
+  /// Replaces points by integers of the target lattice. Throws Failure that names the first point
   /// whose integers would take more than 32 bits; `index` has the points' numbers in the input.
   /// Likewise if the target lattice does not keep them apart from their neighbours. Safe for many
   /// threads at a time.
@@ -46,15 +46,15 @@ class LatticeRounding {
   /// How far a coordinate has moved at most; in output units.
   [[nodiscard]] double farthest() const { return farthest_; }
 
-  [[nodiscard]] const Lattice& target() const { return target_; }
+  [[nodiscard]] const IntegerLattice& target() const { return target_; }
 
  private:
   void check_target(const Box<3>& integers) const;
 
   std::string output_;
-  Lattice target_;
-  std::optional<Lattice> source_;
+  IntegerLattice target_;
+  std::optional<IntegerLattice> source_;
   std::atomic<double> farthest_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,7 @@
 #include "formats/points/las/records/las_metadata.h"
 #include "formats/points/las/records/las_target.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 class NameList {
@@ -50,4 +50,4 @@ std::vector<std::string> lost_fields(const AttributeLayout& attributes,
   return lost.take();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

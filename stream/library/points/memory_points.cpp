@@ -9,7 +9,7 @@
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::uint64_t kBlockPoints = 65536;
@@ -94,7 +94,7 @@ std::optional<double> MemoryPoints<D>::fraction_read() const {
 template class MemoryPoints<2>;
 template class MemoryPoints<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
@@ -113,21 +113,21 @@ void PointSink::write(std::span<const Point<3>> points, const AttributeColumns& 
 void PointSink::finish() {}
 
 std::unique_ptr<PointSource> points_in_memory(PointView<3> points, AttributeColumns attributes) {
-  return std::make_unique<detail::MemoryPoints<3>>(points, std::move(attributes));
+  return std::make_unique<stream::MemoryPoints<3>>(points, std::move(attributes));
 }
 
 std::unique_ptr<PointSource> points_in_memory(PointView<2> points, AttributeColumns attributes) {
-  return std::make_unique<detail::MemoryPoints<2>>(points, std::move(attributes));
+  return std::make_unique<stream::MemoryPoints<2>>(points, std::move(attributes));
 }
 
 std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points,
                                               AttributeColumns attributes) {
-  return std::make_unique<detail::MemoryPoints<3>>(std::move(points), std::move(attributes));
+  return std::make_unique<stream::MemoryPoints<3>>(std::move(points), std::move(attributes));
 }
 
 std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points,
                                               AttributeColumns attributes) {
-  return std::make_unique<detail::MemoryPoints<2>>(std::move(points), std::move(attributes));
+  return std::make_unique<stream::MemoryPoints<2>>(std::move(points), std::move(attributes));
 }
 
 }  // namespace spillway

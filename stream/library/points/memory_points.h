@@ -11,11 +11,11 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/source/point_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points of an array in memory; a run's threads take them from there.
 template <int D>
-class MemoryPoints final : public spillway::PointSource, public EnginePoints, private PointStream {
+class MemoryPoints final : public PointSource, public EnginePoints, private PointStream {
  public:
   /// What the view refers to must outlive it.
   MemoryPoints(PointView<D> points, AttributeColumns attributes)
@@ -39,7 +39,7 @@ class MemoryPoints final : public spillway::PointSource, public EnginePoints, pr
   EnginePoints* engine_points() override { return this; }
   bool fetch(SourcePiece& piece) override;
   void decode(SourcePiece& piece, PointBlock& block) override;
-  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override { return lattice_; }
   [[nodiscard]] std::optional<std::uint64_t> expected() const override { return points_.size(); }
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] PointCounts counts() const override { return {.read = next_}; }
@@ -55,8 +55,8 @@ class MemoryPoints final : public spillway::PointSource, public EnginePoints, pr
   AttributeLayout attributes_;           ///< those of them that a run wants
   bool is_taken_ = false;                ///< by a run
   std::atomic<std::uint64_t> next_ = 0;  ///< that is to be read
-  const std::optional<Lattice> lattice_;
+  const std::optional<IntegerLattice> lattice_;
   const std::optional<Box<3>> extent_;  ///< not known
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -20,7 +20,7 @@
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// No table of points has more.
@@ -151,23 +151,23 @@ OpenedPoints::OpenedPoints(const std::vector<std::string>& paths, const PointOpt
     throw InvalidArgument(fmt::format("points are not {} apart: give 0 for all of them, or more",
                                       options.resolution));
   }
-  PointSourceOptions how = source_options(options, context);
+  JoinedInputsOptions how = source_options(options, context);
   Executor* const executor = context.options().executor.get();
   is_shared_ = executor != nullptr;
   if (is_shared_) {
     input_ = executor->open_points(context, paths, std::move(how));
   } else {
-    const std::vector<std::string> files = spillway::expand_inputs(paths, context);
+    const std::vector<std::string> files = expand_inputs(paths, context);
     if (files.empty()) throw InvalidArgument("there are no files to read points from");
-    input_ = std::make_unique<detail::PointSource>(context.state().files(), files, std::move(how));
+    input_ = std::make_unique<stream::JoinedInputs>(context.state().files(), files, std::move(how));
   }
   check_input(options, context);
   input_->carry(attribute_choice(options.attributes));
 }
 
-PointSourceOptions OpenedPoints::source_options(const PointOptions& options,
-                                                const Context& context) {
-  PointSourceOptions how;
+JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
+                                                 const Context& context) {
+  JoinedInputsOptions how;
   how.dimension = options.dimension;
   how.index = true;
   how.reader.format = options.format;
@@ -273,17 +273,17 @@ RunPoints OpenedPoints::begin(RunWatch& watch, bool index) {
           .headers = input_->headers()};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::vector<std::string> names_in_condition(const std::string& condition) {
-  return detail::Condition(condition).names();
+  return stream::Condition(condition).names();
 }
 
 std::unique_ptr<PointSource> open_points(const std::vector<std::string>& paths,
                                          const PointOptions& options, const Context& context) {
-  return std::make_unique<detail::OpenedPoints>(paths, options, context);
+  return std::make_unique<stream::OpenedPoints>(paths, options, context);
 }
 
 }  // namespace spillway

@@ -8,12 +8,12 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "stream/library/points/engine_points.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The points of files. Inside of the library they are taken as the pipeline does.
-class OpenedPoints final : public spillway::PointSource, public EnginePoints {
+class OpenedPoints final : public PointSource, public EnginePoints {
  public:
   OpenedPoints(const std::vector<std::string>& paths, const PointOptions& options,
                const Context& context);
@@ -26,11 +26,11 @@ class OpenedPoints final : public spillway::PointSource, public EnginePoints {
   RunPoints begin(RunWatch& watch, bool index) override;
   bool identify(RunIdentity& identity) const override;
 
-  [[nodiscard]] detail::PointSource& input() { return *input_; }
+  [[nodiscard]] stream::JoinedInputs& input() { return *input_; }
 
  private:
   EnginePoints* engine_points() override { return this; }
-  PointSourceOptions source_options(const PointOptions& options, const Context& context);
+  JoinedInputsOptions source_options(const PointOptions& options, const Context& context);
   void check_input(const PointOptions& options, const Context& context) const;
   [[nodiscard]] AttributeLayout offered() const;
 
@@ -41,7 +41,7 @@ class OpenedPoints final : public spillway::PointSource, public EnginePoints {
   const Context context_;                   ///< has the files, so it outlives input_, too
   bool is_taken_ = false;                   ///< by a run
   RunWatch* watch_ = nullptr;               ///< of the run that reads, if one does
-  std::unique_ptr<detail::PointSource> input_;
+  std::unique_ptr<stream::JoinedInputs> input_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

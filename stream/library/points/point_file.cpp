@@ -20,7 +20,7 @@
 #include "stream/library/points/lost_fields.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 const PointFormat& format_to_write(const std::string& path, const std::string& name) {
@@ -69,7 +69,7 @@ std::string wkt_of_code(const std::string& crs) {
   if (crs.empty() || crs.find('[') != std::string::npos) return "";
   try {
     return gdal().crs_to_wkt(crs);
-  } catch (const Error&) {  // LAS can tell the code alone too, or refuses it
+  } catch (const Failure&) {  // LAS can tell the code alone too, or refuses it
     return "";
   }
 }
@@ -131,7 +131,7 @@ AttributeChoice PointFile::wanted_attributes() const {
   return {.all = format_.writes_attributes == nullptr || format_.writes_attributes(path_)};
 }
 
-/// Throws Error if the file is an input that would lose something.
+/// Throws Failure if the file is an input that would lose something.
 void PointFile::check_overwriting(const RunPoints& points) const {
   if (options_.force || path_ == "-") return;
   const bool is_input = std::ranges::any_of(points.headers, [&](const PointHeader& header) {
@@ -151,7 +151,7 @@ void PointFile::check_overwriting(const RunPoints& points) const {
       {.file = path_, .remedy = Remedy::kForce});
 }
 
-/// Throws Error for a name that is asked for and that no point has.
+/// Throws Failure for a name that is asked for and that no point has.
 void PointFile::check_attributes(const RunPoints& points) const {
   if (!options_.attributes) return;
   if (!format_.holds_attributes && !options_.attributes->empty()) {
@@ -311,13 +311,13 @@ void PointFile::finish() {
   complete();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<PointSink> create_points(const std::string& path, const PointFileOptions& options,
                                          const Context& context) {
-  return std::make_unique<detail::PointFile>(path, options, context);
+  return std::make_unique<stream::PointFile>(path, options, context);
 }
 
 }  // namespace spillway

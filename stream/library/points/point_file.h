@@ -19,7 +19,7 @@
 #include "stream/library/points/lattice_rounding.h"
 #include "stream/points/points_view.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// For WorkSharing, inside of with_threads().
 void share_out(std::size_t count, const WorkSharing::Body& body);
@@ -28,7 +28,7 @@ void share_out(std::size_t count, const WorkSharing::Body& body);
 /// begin(), write() and finish().
 class PointFile final : public spillway::PointSink {
  public:
-  /// Throws Error(kInvalidArgument) for a format that is not known or not written, and for options
+  /// Throws Failure(kInvalidArgument) for a format that is not known or not written, and for options
   /// that it does not have. `files` must outlive it.
   PointFile(const std::string& path, const PointFileOptions& options, const Context& context,
             FileSystem& files = disk());
@@ -96,8 +96,8 @@ class PointFile final : public spillway::PointSink {
   bool adds_heights_ = false;
   bool rounds_ = false;
   std::vector<std::string> lost_;
-  AttributeLayout told_;           ///< attributes of the points
-  std::optional<Lattice> source_;  ///< on which points come
+  AttributeLayout told_;                  ///< attributes of the points
+  std::optional<IntegerLattice> source_;  ///< on which points come
   std::optional<LatticeRounding> rounding_;
   std::unique_ptr<PointWriter> writer_;  ///< once it is known how
   bool begun_ = false;
@@ -106,4 +106,4 @@ class PointFile final : public spillway::PointSink {
   std::function<void(std::uint64_t points)> finishing_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,9 +9,9 @@
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-ProgramPoints::ProgramPoints(spillway::PointSource& source, int dimension)
+ProgramPoints::ProgramPoints(PointSource& source, int dimension)
     : source_(source),
       header_(source.header()),
       told_(checked_attributes(header_.attributes)),
@@ -88,4 +88,4 @@ std::optional<double> ProgramPoints::fraction_read() const {
   return std::min(1.0, static_cast<double>(read_) / static_cast<double>(*header_.count));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

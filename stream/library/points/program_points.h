@@ -10,19 +10,19 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/source/point_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The points of a program's own source, as the pipeline takes them.
 class ProgramPoints final : public PointStream, public EnginePoints {
  public:
   /// `source` must outlive it. Of its lattice only one is used on which that many axes are alike,
-  /// or any if `dimension` is 0. Throws Error(kInvalidArgument) for a header that cannot be.
-  explicit ProgramPoints(spillway::PointSource& source, int dimension = 0);
+  /// or any if `dimension` is 0. Throws Failure(kInvalidArgument) for a header that cannot be.
+  explicit ProgramPoints(PointSource& source, int dimension = 0);
 
   bool fetch(SourcePiece& piece) override;
   void decode(SourcePiece& piece, PointBlock& block) override;
 
-  [[nodiscard]] const std::optional<Lattice>& lattice() const override { return lattice_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override { return lattice_; }
   [[nodiscard]] std::optional<std::uint64_t> expected() const override { return header_.count; }
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] PointCounts counts() const override { return {.read = read_}; }
@@ -35,16 +35,16 @@ class ProgramPoints final : public PointStream, public EnginePoints {
  private:
   [[nodiscard]] LatticePoint placed(const spillway::Point<3>& point, std::uint64_t number) const;
 
-  spillway::PointSource& source_;
+  PointSource& source_;
   PointsHeader header_;
   AttributeLayout told_;         ///< that each block of the program has
   AttributeLayout attributes_;   ///< those of them that are wanted
   spillway::PointsBlock block_;  ///< that was read last
-  std::optional<Lattice> lattice_;
+  std::optional<IntegerLattice> lattice_;
   bool heights_on_lattice_ = false;
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
   std::atomic<std::uint64_t> read_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,9 +6,9 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
-std::vector<Point<3>> public_points(const std::optional<Lattice>& lattice,
+std::vector<Point<3>> public_points(const std::optional<IntegerLattice>& lattice,
                                     std::span<const LatticePoint> points) {
   std::vector<Point<3>> told;
   told.reserve(points.size());
@@ -29,12 +29,12 @@ const Point<3>& finite_point(const Point<3>& point, std::uint64_t number) {
                                     fmt::join(point, ", ")));
 }
 
-std::optional<spillway::Lattice> public_lattice(const std::optional<Lattice>& lattice, bool has_z) {
+std::optional<Lattice> public_lattice(const std::optional<IntegerLattice>& lattice, bool has_z) {
   if (!lattice) return std::nullopt;
-  return spillway::Lattice{lattice->scale, lattice->offset, has_z};
+  return Lattice{lattice->scale, lattice->offset, has_z};
 }
 
-std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& lattice) {
+std::optional<IntegerLattice> checked_lattice(const std::optional<Lattice>& lattice) {
   if (!lattice) return std::nullopt;
   for (int axis = 0; axis < 3; ++axis) {
     const double scale = lattice->scale[axis];
@@ -47,10 +47,10 @@ std::optional<Lattice> checked_lattice(const std::optional<spillway::Lattice>& l
   if (!lattice->has_z && (lattice->scale[2] != 1 || lattice->offset[2] != 0)) {
     throw InvalidArgument("a lattice without z has 1 as the scale of z and 0 as its offset");
   }
-  return Lattice{lattice->scale, lattice->offset};
+  return IntegerLattice{lattice->scale, lattice->offset};
 }
 
-double integer_on(const Lattice& lattice, int axis, double coordinate, const char* what,
+double integer_on(const IntegerLattice& lattice, int axis, double coordinate, const char* what,
                   std::uint64_t number) {
   const std::optional<double> integer = lattice.to_integer(axis, coordinate);
   if (integer) return *integer;
@@ -85,4 +85,4 @@ std::optional<Box<3>> checked_box(const PointsHeader& header) {
   return told_box(header.extent, "points");
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -18,15 +18,15 @@
 #include "stream/library/points/program_points.h"
 #include "stream/library/products/point_comparison.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The points that the vertices are compared with, if there are any; their lattice is noted for the
 /// proof.
 class Comparison {
  public:
-  Comparison(spillway::PointSource* source, int dimension, const Context& context, RunWatch& watch,
-             CheckOptions& how)
+  Comparison(PointSource* source, int dimension, const Context& context, RunWatch& watch,
+             CheckerOptions& how)
       : watch_(watch) {
     if (source == nullptr) return;
     auto* points = OwnParts::of(*source);
@@ -47,7 +47,7 @@ class Comparison {
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
 
-  void run(const CheckOptions& how, CheckReport& report) {
+  void run(const CheckerOptions& how, CheckReport& report) {
     if (input_ == nullptr) return;
     vertices_->compare(*input_, how, report, watch_);
     report.points = input_->counts();
@@ -61,7 +61,7 @@ class Comparison {
   std::optional<PointComparison> vertices_;
 };
 
-CheckReport check_whole(const Mesh& mesh, CheckOptions& how, spillway::PointSource* points,
+CheckReport check_whole(const Mesh& mesh, CheckerOptions& how, PointSource* points,
                         const Context& context, RunWatch& watch) {
   Comparison comparison(points, mesh.header.dimension, context, watch, how);
   watch.begin("check", "simplices");
@@ -72,7 +72,7 @@ CheckReport check_whole(const Mesh& mesh, CheckOptions& how, spillway::PointSour
   return report;
 }
 
-CheckReport check_stream(MeshStreamReader& reader, CheckOptions& how, spillway::PointSource* points,
+CheckReport check_stream(MeshStreamReader& reader, CheckerOptions& how, PointSource* points,
                          const Context& context, RunWatch& watch) {
   Comparison comparison(points, reader.header().dimension, context, watch, how);
   how.progress = [&watch](std::uint64_t simplices, std::optional<double> fraction) {
@@ -86,25 +86,25 @@ CheckReport check_stream(MeshStreamReader& reader, CheckOptions& how, spillway::
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 CheckReport check(MeshSource& mesh, const CheckOptions& options, const Context& context,
                   PointSource* points) {
-  detail::RunWatch watch(context);
+  stream::RunWatch watch(context);
   watch.check();
-  detail::CheckOptions how;
+  checker::CheckerOptions how;
   static_cast<CheckOptions&>(how) = options;
   how.threads = context.threads();
-  auto* const file = detail::OwnParts::of(mesh);
+  auto* const file = stream::OwnParts::of(mesh);
   if (file == nullptr) {
-    detail::ProgramMesh reader(mesh);
-    return detail::check_stream(reader, how, points, context, watch);
+    stream::ProgramMesh reader(mesh);
+    return stream::check_stream(reader, how, points, context, watch);
   }
   file->take();
-  if (file->is_stream()) return detail::check_stream(file->stream(), how, points, context, watch);
-  return detail::check_whole(file->whole(watch), how, points, context, watch);
+  if (file->is_stream()) return stream::check_stream(file->stream(), how, points, context, watch);
+  return stream::check_whole(file->whole(watch), how, points, context, watch);
 }
 
 }  // namespace spillway

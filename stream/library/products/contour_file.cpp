@@ -12,7 +12,7 @@
 #include "stream/library/context/executor.h"
 #include "stream/sinks/contour_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The part of the memory that is for points of lines that are not complete.
@@ -24,7 +24,7 @@ const VectorFormat& format_of(const std::string& path) {
       fmt::format("{}: contours go to a file that ends in {}", path, vector_extensions(true)));
 }
 
-Levels levels_of(const spillway::ContourOptions& options) {
+Levels levels_of(const ContourOptions& options) {
   if (options.levels.empty()) return Levels::every(options.interval, options.base);
   if (options.interval != 0) {
     throw InvalidArgument("contours have an interval or a list of levels, not both");
@@ -34,7 +34,7 @@ Levels levels_of(const spillway::ContourOptions& options) {
 
 }  // namespace
 
-ContourFile::ContourFile(const std::string& path, const spillway::ContourOptions& options,
+ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
                          const Context& context)
     : OwnSink(context),
       path_(path),
@@ -79,7 +79,7 @@ BlockSink* ContourFile::begin_again() {
 }
 
 /// Whether coordinates are written as they are, though they are to be longitude and latitude.
-/// Throws Error if that is so, and not agreed to.
+/// Throws Failure if that is so, and not agreed to.
 bool ContourFile::keeps_coordinates(const MeshStart& start) const {
   if (!format_.is_lonlat) return false;
   const std::string& crs = start.header.crs;
@@ -93,7 +93,7 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
   const std::string what =
       fmt::format("{} holds longitude and latitude in WGS 84, and {}", format_.title, reason);
   if (!options_.foreign_crs) {
-    throw Error(what, ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kUnknownCrs});
+    throw Failure(what, ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kUnknownCrs});
   }
   if (context().options().warning) {
     context().options().warning(
@@ -117,17 +117,17 @@ void ContourFile::take_merged(const MergedBlock& block) { writer_->take_merged(b
 void ContourFile::give_share(ShareSender& sender) { give_contours(*writer_, *lines_, sender); }
 
 void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
-  ContourFigures all;
+  ContourStatistics all;
   all.lowest = writer_->lowest();
   all.highest = writer_->highest();
   take_contours(
       *writer_, others,
       [this](std::span<const Point<2>> points, double height) { add(points, height); },
-      [&all](const ContourFigures& figures) {
-        all.lowest = std::min(all.lowest, figures.lowest);
-        all.highest = std::max(all.highest, figures.highest);
-        all.lines += figures.lines;
-        all.spilled_bytes += figures.spilled_bytes;
+      [&all](const ContourStatistics& statistics) {
+        all.lowest = std::min(all.lowest, statistics.lowest);
+        all.highest = std::max(all.highest, statistics.highest);
+        all.lines += statistics.lines;
+        all.spilled_bytes += statistics.spilled_bytes;
       });
   writer_->finish(report.mesh);
   all.lines += writer_->lines();
@@ -143,13 +143,13 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
   report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<ContourSink> create_contours(const std::string& path, const ContourOptions& options,
                                              const Context& context) {
-  return std::make_unique<detail::ContourFile>(path, options, context);
+  return std::make_unique<stream::ContourFile>(path, options, context);
 }
 
 }  // namespace spillway

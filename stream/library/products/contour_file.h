@@ -15,13 +15,12 @@
 #include "stream/sinks/contour_writer.h"
 #include "stream/sinks/line_store.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A vector file of contours in the making.
 class ContourFile final : public OwnSink<ContourSink> {
  public:
-  ContourFile(const std::string& path, const spillway::ContourOptions& options,
-              const Context& context);
+  ContourFile(const std::string& path, const ContourOptions& options, const Context& context);
 
   void identify(RunIdentity& identity) const override {
     identify_product("contours", path_, identity);
@@ -45,11 +44,11 @@ class ContourFile final : public OwnSink<ContourSink> {
 
   std::string path_;
   const VectorFormat& format_;
-  spillway::ContourOptions options_;
+  ContourOptions options_;
   Levels levels_;
   std::shared_ptr<ScratchFolder> scratch_;
   VectorLayerOptions layer_;
-  ContourOptions contours_;
+  ContourSinkOptions contours_;
   bool writes_file_;                ///< or another process does
   std::optional<VectorFile> file_;  ///< of who writes it
   std::optional<LineStore> lines_;  ///< of the others
@@ -58,4 +57,4 @@ class ContourFile final : public OwnSink<ContourSink> {
   ContourReport report_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

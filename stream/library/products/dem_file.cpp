@@ -22,7 +22,7 @@
 #include "stream/plan/memory_plan.h"
 #include "stream/sinks/dem_shares.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
@@ -75,7 +75,7 @@ void check_z_factor(const std::optional<double>& factor) {
       fmt::format("heights are multiplied by a number above 0, not by {}", *factor));
 }
 
-void check_light_and_file(const spillway::DemOptions& options) {
+void check_light_and_file(const DemOptions& options) {
   if (!(options.azimuth >= 0 && options.azimuth <= 360)) {
     throw InvalidArgument(
         fmt::format("light comes from 0 to 360 degrees, not from {}", options.azimuth));
@@ -91,7 +91,7 @@ void check_light_and_file(const spillway::DemOptions& options) {
   }
 }
 
-GridRequest grid_request(const spillway::DemOptions& options) {
+GridRequest grid_request(const DemOptions& options) {
   if (!(options.resolution > 0) || !std::isfinite(options.resolution)) {
     throw InvalidArgument(fmt::format("pixels have a side above 0, not of {}", options.resolution));
   }
@@ -106,7 +106,7 @@ GridRequest grid_request(const spillway::DemOptions& options) {
   return grid;
 }
 
-RasterOptions file_options(const std::string& path, const spillway::DemOptions& options,
+RasterOptions file_options(const std::string& path, const DemOptions& options,
                            RasterOptions raster) {
   raster.name = raster.path = path;
   raster.compression = options.compression;
@@ -116,7 +116,7 @@ RasterOptions file_options(const std::string& path, const spillway::DemOptions& 
 
 }  // namespace
 
-DemFile::DemFile(const spillway::DemOptions& options, const Context& context)
+DemFile::DemFile(const DemOptions& options, const Context& context)
     : OwnSink(context), options_(options), scratch_(context.state().scratch(context)) {
   check_products(options_.products);
   check_light_and_file(options_);
@@ -134,15 +134,14 @@ DemFile::DemFile(const spillway::DemOptions& options, const Context& context)
   dem_options_.threads = feeding_threads(context.threads());
 }
 
-DemFile::DemFile(const std::string& path, const spillway::DemOptions& options,
-                 const Context& context)
+DemFile::DemFile(const std::string& path, const DemOptions& options, const Context& context)
     : DemFile(options, context) {
   path_ = path;
   check_path(path_);
   if (is_first_process(context)) check_can_create(disk(), path_);
 }
 
-DemFile::DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context)
+DemFile::DemFile(DemPixels& pixels, const DemOptions& options, const Context& context)
     : DemFile(options, context) {
   pixels_ = &pixels;
 }
@@ -225,7 +224,7 @@ bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
     check_latitudes(dem_->in_output(extent));
     if (is_large(grid_of(extent), vertices)) return false;
     dem_->begin(extent);
-  } catch (const Error&) {
+  } catch (const Failure&) {
     return false;
   }
   return true;
@@ -273,7 +272,7 @@ void DemFile::check_latitudes(const Box<2>& extent) const {
   const double degrees = dem_options_.ground.degrees;
   const double farthest = std::max(std::abs(extent.lo[1]), std::abs(extent.hi[1]));
   if (extent.empty() || farthest * degrees <= 90 + kRounding) return;
-  throw Error(
+  throw Failure(
       fmt::format("y reaches from {:.15g} to {:.15g}, which are no latitudes of {}: how x and "
                   "y relate to heights is not known, as slope, aspect and hillshade need it",
                   extent.lo[1], extent.hi[1], gdal().crs_name(crs_)),
@@ -288,7 +287,7 @@ void DemFile::check_crs(const MeshStart& start) const {
   const std::string& crs = start.header.crs;
   if (crs.empty() || like_.crs.empty() || options_.foreign_crs) return;
   if (gdal().same_crs(crs, like_.crs)) return;
-  throw Error(
+  throw Failure(
       fmt::format("{} is in {}, but {} in {}; reproject one of them, or take coordinates "
                   "as they are",
                   start.name, gdal().crs_name(crs), options_.like, gdal().crs_name(like_.crs)),
@@ -311,7 +310,7 @@ void DemFile::check_size(const Box<2>& extent, std::uint64_t vertices) const {
         grid.columns, grid.rows, vertices));
     return;
   }
-  throw Error(
+  throw Failure(
       fmt::format("the points, {} of them, reach from {:.15g}, {:.15g} to {:.15g}, {:.15g}: that "
                   "is a raster of {} x {} pixels, {:.2g} for each of them, as if some lay far away",
                   vertices, box.lo[0], box.lo[1], box.hi[0], box.hi[1], grid.columns, grid.rows,
@@ -361,7 +360,7 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
              .spilled_bytes = dem.spilled_bytes()};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
@@ -373,12 +372,12 @@ const std::vector<std::string>& dem_product_names() {
 
 std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
                                     const Context& context) {
-  return std::make_unique<detail::DemFile>(path, options, context);
+  return std::make_unique<stream::DemFile>(path, options, context);
 }
 
 std::unique_ptr<DemSink> create_dem(DemPixels& pixels, const DemOptions& options,
                                     const Context& context) {
-  return std::make_unique<detail::DemFile>(pixels, options, context);
+  return std::make_unique<stream::DemFile>(pixels, options, context);
 }
 
 }  // namespace spillway

@@ -13,14 +13,14 @@
 #include "stream/sinks/dem.h"
 #include "stream/sinks/dem_writer.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A raster of a terrain in the making, which becomes a GeoTIFF, or stays in memory.
 class DemFile final : public OwnSink<DemSink> {
  public:
-  DemFile(const std::string& path, const spillway::DemOptions& options, const Context& context);
+  DemFile(const std::string& path, const DemOptions& options, const Context& context);
   /// `pixels` must outlive it.
-  DemFile(DemPixels& pixels, const spillway::DemOptions& options, const Context& context);
+  DemFile(DemPixels& pixels, const DemOptions& options, const Context& context);
 
   void identify(RunIdentity& identity) const override;
   [[nodiscard]] bool goes_on() const override { return true; }
@@ -41,7 +41,7 @@ class DemFile final : public OwnSink<DemSink> {
 
  private:
   /// Of options that all rasters have.
-  DemFile(const spillway::DemOptions& options, const Context& context);
+  DemFile(const DemOptions& options, const Context& context);
 
   BlockSink& open(const MeshStart& start) override;
 
@@ -55,9 +55,9 @@ class DemFile final : public OwnSink<DemSink> {
 
   std::string path_;             ///< empty: pixels_ takes them
   DemPixels* pixels_ = nullptr;  ///< or none
-  spillway::DemOptions options_;
+  DemOptions options_;
   RasterGrid like_;
-  DemOptions dem_options_;
+  DemSinkOptions dem_options_;
   std::shared_ptr<ScratchFolder> scratch_;
   std::string crs_;
   std::optional<Dem> dem_;
@@ -65,4 +65,4 @@ class DemFile final : public OwnSink<DemSink> {
   DemReport report_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

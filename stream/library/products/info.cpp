@@ -15,7 +15,7 @@
 #include "stream/library/points/opened_points.h"
 #include "stream/source/input_regions.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 std::optional<Extent> extent_of(const Box<3>& box) {
@@ -28,7 +28,7 @@ std::optional<Extent> extent_of(const Box<3>& box) {
   return extent;
 }
 
-std::optional<LatticeInfo> lattice_info(const std::optional<Lattice>& lattice) {
+std::optional<LatticeInfo> lattice_info(const std::optional<IntegerLattice>& lattice) {
   if (!lattice) return std::nullopt;
   return LatticeInfo{lattice->scale, lattice->offset};
 }
@@ -80,7 +80,7 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
 MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   MeshStreamReader& reader = file.stream();
   Box<3> box;
-  CheckOptions options;
+  CheckerOptions options;
   options.vertex = [&box](const WorldPoint& vertex) { box.expand(vertex); };
   options.progress = [&watch](std::uint64_t simplices, std::optional<double> fraction) {
     watch.tell(simplices, fraction);
@@ -107,13 +107,13 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 PointsInfo describe_points(const std::string& path, const PointOptions& options,
                            const Context& context) {
-  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
   if (spillway::stands_for_several(path)) {
     throw InvalidArgument(path + ": this stands for several files; describe one by one");
   }
@@ -121,9 +121,9 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   watch.check();
   OpenedPoints points({path}, options, context);
   points.begin(watch, false);
-  detail::PointSource& source = points.input();
+  stream::JoinedInputs& source = points.input();
   const PointHeader header = source.headers().front();
-  const std::optional<detail::Lattice>& lattice = source.lattice();
+  const std::optional<geometry::IntegerLattice>& lattice = source.lattice();
   Box<3> box;
   OutsidePoints outside(header);
   PointBlock block;
@@ -159,7 +159,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
 
 MeshInfo describe_mesh(const std::string& path, const MeshOptions& options,
                        const Context& context) {
-  using namespace detail;  // NOLINT(google-build-using-namespace): the other side of the door
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
   RunWatch watch(context);
   watch.check();
   OpenedMesh file(path, options, context);

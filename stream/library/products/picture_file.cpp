@@ -13,7 +13,7 @@
 #include "stream/library/context/context_state.h"
 #include "stream/plan/memory_plan.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
@@ -119,13 +119,13 @@ void PictureFile::finalize(RunWatch& watch, Report& report, OtherShares& /*other
   report_.edges_too_small = scene_->edges_too_small();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<PictureSink> create_picture(const std::string& path, const PictureOptions& options,
                                             const Context& context) {
-  return std::make_unique<detail::PictureFile>(path, options, context);
+  return std::make_unique<stream::PictureFile>(path, options, context);
 }
 
 }  // namespace spillway

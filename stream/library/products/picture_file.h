@@ -10,7 +10,7 @@
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/sinks/scene.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A PNG file of a mesh in the making.
 class PictureFile final : public OwnSink<PictureSink> {
@@ -41,4 +41,4 @@ class PictureFile final : public OwnSink<PictureSink> {
   PictureReport report_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

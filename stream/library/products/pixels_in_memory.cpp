@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 PixelsInMemory::PixelsInMemory(const RasterOptions& raster, DemPixels& pixels)
     : grid_(raster.grid.pixels), pixels_(pixels) {
@@ -24,4 +24,4 @@ void PixelsInMemory::write_tile(std::size_t band, std::uint32_t tile_column, std
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

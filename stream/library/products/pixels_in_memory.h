@@ -4,7 +4,7 @@
 
 #include "formats/gdal/raster.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Takes the tiles of a raster as plain rows of pixels.
 class PixelsInMemory final : public Raster {
@@ -21,4 +21,4 @@ class PixelsInMemory final : public Raster {
   DemPixels& pixels_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "stream/checker/fault_text.h"
 #include "stream/tiles/tile_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Marks the index of a vertex, to tell it from a point of the input.
@@ -148,8 +148,8 @@ void PointComparison::put_away() {
   file_->append(bytes);
 }
 
-void PointComparison::compare(PointStream& input, const CheckOptions& options, CheckReport& report,
-                              RunWatch& watch) {
+void PointComparison::compare(PointStream& input, const CheckerOptions& options,
+                              CheckReport& report, RunWatch& watch) {
   StageTimes times;
   class Watch final : public DealingWatch {
    public:
@@ -216,4 +216,4 @@ void PointComparison::compare(PointStream& input, const CheckOptions& options, C
           : fmt::format("the vertices are the {} distinct points of the input", distinct));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "stream/points/encoded_points.h"
 #include "stream/source/point_stream.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Compares the vertices of a mesh with the distinct points of its input, in bounded memory: both
 /// are dealt into tiles, where equal points meet, and each tile is compared for itself.
@@ -28,7 +28,7 @@ class PointComparison {
   /// by their first `dimension` output coordinates, and, in the plane, whether each vertex's height
   /// lies between those of its points. Reads the input to its end. Its phases are "read points",
   /// of the input; "divide", if need be; and "compare", of vertices and of points that are kept.
-  void compare(PointStream& input, const CheckOptions& options, CheckReport& report,
+  void compare(PointStream& input, const CheckerOptions& options, CheckReport& report,
                RunWatch& watch);
 
  private:
@@ -43,4 +43,4 @@ class PointComparison {
   std::vector<EncodedBlock> blocks_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -16,7 +16,7 @@ ProductShare::~ProductShare() = default;
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Shares that threads take and give back.
@@ -121,13 +121,13 @@ class ProductSink final : public OwnSink<spillway::MeshSink> {
 };
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::stream
 
 namespace spillway {
 
 std::unique_ptr<MeshSink> create_product(std::shared_ptr<ProductShare> all,
                                          const Context& context) {
-  return std::make_unique<detail::ProductSink>(std::move(all), context);
+  return std::make_unique<stream::ProductSink>(std::move(all), context);
 }
 
 }  // namespace spillway

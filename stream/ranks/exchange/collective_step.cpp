@@ -4,7 +4,7 @@
 #include <exception>
 #include <span>
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 void run_collective_step(const distributed::Ranks& ranks, const std::function<void()>& step) {
   std::exception_ptr failure;
@@ -22,4 +22,4 @@ void run_collective_step(const distributed::Ranks& ranks, const std::function<vo
   ranks.barrier();  // never left: the rank that throws ends the job
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 std::size_t largest_message(const MemoryBudget& budget, const distributed::Ranks& ranks) {
   constexpr std::uint64_t kShare = 32;
@@ -14,4 +14,4 @@ std::size_t largest_message(const MemoryBudget& budget, const distributed::Ranks
   return std::max(kLeast, limit / kShare);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 template <typename T>
@@ -71,7 +71,7 @@ PointHeader unpack_header(Unpacker& message) {
   header.point_format = message.take<int>();
   header.coordinates = message.take<int>();
   header.count = unpack_optional<std::uint64_t>(message);
-  header.lattice = unpack_optional<Lattice>(message);
+  header.lattice = unpack_optional<IntegerLattice>(message);
   header.extent = unpack_optional<Box<3>>(message);
   header.crs = message.take_list<std::string>();
   header.crs_note = message.take_list<std::string>();
@@ -183,4 +183,4 @@ template void pack(Packer&, const Border<3>&, bool);
 template Border<2> unpack_border(Unpacker&, bool);
 template Border<3> unpack_border(Unpacker&, bool);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -10,7 +10,7 @@
 #include "stream/tiles/tile_tree.h"
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 void pack(Packer& message, const SourceFacts& facts);
 SourceFacts unpack_source_facts(Unpacker& message);
@@ -26,4 +26,4 @@ void pack(Packer& message, const Border<D>& border, bool with_index);
 template <int D>
 Border<D> unpack_border(Unpacker& message, bool with_index);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -5,10 +5,11 @@
 
 #include "stream/points/encoded_points.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
-PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
-                       StageTimes& times, const std::function<void()>& progress)
+PieceTable::PieceTable(JoinedInputs& source, const distributed::Ranks& ranks,
+                       ScratchFolder& scratch, StageTimes& times,
+                       const std::function<void()>& progress)
     : source_(source),
       ranks_(ranks),
       times_(times),
@@ -17,7 +18,7 @@ PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, Scr
   store_own_inputs(scratch, progress);
 }
 
-PieceTable::PieceTable(PointSource& source, const distributed::Ranks& ranks, StageTimes& times,
+PieceTable::PieceTable(JoinedInputs& source, const distributed::Ranks& ranks, StageTimes& times,
                        StateReader& saved)
     : source_(source),
       ranks_(ranks),
@@ -124,4 +125,4 @@ void PieceTable::decode(SourcePiece& batch, PointBlock& block) const {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

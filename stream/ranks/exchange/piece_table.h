@@ -11,9 +11,9 @@
 #include "formats/state/state_writer.h"
 #include "src/distributed/ranks.h"
 #include "src/runtime/stage_times.h"
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// All points of the inputs as pieces of some ten thousand, numbered in their order. Pieces of
 /// files that can be read in any order are read by any rank. What can only be read from front to
@@ -23,10 +23,10 @@ class PieceTable {
  public:
   /// Collective. The points of `source` have an index. All must outlive it. `progress` is called
   /// while inputs are read from front to back.
-  PieceTable(PointSource& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
+  PieceTable(JoinedInputs& source, const distributed::Ranks& ranks, ScratchFolder& scratch,
              StageTimes& times, const std::function<void()>& progress);
   /// The table that a process before this one has saved. Not collective.
-  PieceTable(PointSource& source, const distributed::Ranks& ranks, StageTimes& times,
+  PieceTable(JoinedInputs& source, const distributed::Ranks& ranks, StageTimes& times,
              StateReader& saved);
 
   template <typename State>
@@ -73,7 +73,7 @@ class PieceTable {
   void store(std::vector<Stored>& pieces, ScratchFolder& scratch,
              const std::function<void()>& progress);
 
-  PointSource& source_;
+  JoinedInputs& source_;
   const distributed::Ranks& ranks_;
   StageTimes& times_;
   bool numbered_;
@@ -82,4 +82,4 @@ class PieceTable {
   std::shared_ptr<ScratchFile> file_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

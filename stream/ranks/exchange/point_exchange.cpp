@@ -11,7 +11,7 @@
 #include "stream/points/encoded_points.h"
 #include "stream/tiles/cuts/dealt_points.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 /// An index that is not counted through all inputs: the number of a piece, then that of a record.
@@ -195,4 +195,4 @@ void PointExchange::send(std::vector<OwnPiece>& own) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -11,7 +11,7 @@
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/ranks/exchange/rank_division.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// How many pieces may be on their way at a time.
 struct ExchangeRound {
@@ -104,4 +104,4 @@ class PointExchange : public PointFeed {
 /// Puts indices that count through all inputs in place of those that name pieces.
 void count_through(std::span<std::uint64_t> index, std::span<const std::uint64_t> records_before);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

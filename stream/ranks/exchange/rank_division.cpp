@@ -10,7 +10,7 @@
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/tiles/cuts/sample_division.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 /// Pieces that are looked at, at least if there are as many: all of them, for small inputs. More
@@ -127,4 +127,4 @@ DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& r
 template DividedSample divide_among_ranks<2>(PieceTable&, const distributed::Ranks&);
 template DividedSample divide_among_ranks<3>(PieceTable&, const distributed::Ranks&);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

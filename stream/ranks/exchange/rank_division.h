@@ -9,7 +9,7 @@
 #include "stream/ranks/exchange/piece_table.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// Which rank each point belongs to: the top of the k-d tree, one tile for each rank. Ranks are in
 /// the order of the tree, so that the ranks below a cut follow each other.
@@ -39,4 +39,4 @@ struct DividedSample {
 template <int D>
 DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& ranks);
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

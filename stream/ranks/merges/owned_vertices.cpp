@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 void sort_and_unite(std::vector<VertexId>& vertices) {
@@ -47,7 +47,7 @@ std::optional<SectionDraft> OwnedVertices<D>::announce(std::uint32_t section) {
   if (used_.empty()) return std::nullopt;
   SectionDraft draft;
   draft.section.section = section;
-  MeshBlock& mesh = draft.section.mesh;
+  MeshStreamBlock& mesh = draft.section.mesh;
   for (const VertexId v : used_) {
     BorderVertex<D>& vertex = vertices_.vertices[v];
     vertex.place = shared_place(section, mesh.vertices.size());
@@ -107,4 +107,4 @@ void OwnedVertices<D>::append_record(VertexId v, std::vector<std::byte>& attribu
 template class OwnedVertices<2>;
 template class OwnedVertices<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -11,7 +11,7 @@
 #include "stream/ranks/rank_pipeline.h"
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// What a merge has done to a vertex at one rank, for the rank that owns it.
 struct VertexNews {
@@ -71,4 +71,4 @@ class OwnedVertices {
   std::vector<VertexId> used_;          ///< likewise
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

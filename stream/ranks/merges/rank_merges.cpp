@@ -17,7 +17,7 @@
 #include "stream/ranks/merges/gather_below.h"
 #include "stream/triangulate/settle.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 namespace {
 
 using distributed::Group;
@@ -120,41 +120,41 @@ std::vector<std::uint32_t> RankMerges<D>::exposure_of_new(std::size_t merges_don
 
 template <int D>
 void RankMerges<D>::merge(const Step& step) {
-  RankMerge figures;
-  figures.level = step.node->level;
-  figures.ranks = step.ranks.size();
-  figures.border_simplices = share_->simplices().size();
+  RankMerge statistics;
+  statistics.level = step.node->level;
+  statistics.ranks = step.ranks.size();
+  statistics.border_simplices = share_->simplices().size();
   Task task{.points = step.node->tiles->size()};
   task.after.resize(3);
   const distributed::Traffic before = distributed::traffic();
   {
-    const Stopwatch watch(figures.seconds);
-    const WorkTimer work(figures.processor_seconds);
+    const Stopwatch watch(statistics.seconds);
+    const WorkTimer work(statistics.processor_seconds);
     ShrinkingLease received(budget_);
     const ItemLimits limits{.largest_message = largest_message_, .received = &received};
-    merge_halves(step, limits, task, figures);
+    merge_halves(step, limits, task, statistics);
     if (share_->dimension() == D) settle(step, limits, task);
     hold();
   }
   const distributed::Traffic after = distributed::traffic();
-  figures.sent_bytes = after.bytes - before.bytes;
-  figures.wait_seconds = after.seconds - before.seconds;
-  figures.calls = after.calls - before.calls;
+  statistics.sent_bytes = after.bytes - before.bytes;
+  statistics.wait_seconds = after.seconds - before.seconds;
+  statistics.calls = after.calls - before.calls;
   engine_.count_rank_merge(step.node->level, task);
-  figures_.push_back(figures);
+  statistics_.push_back(statistics);
 }
 
 template <int D>
 void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task,
-                                 RankMerge& figures) {
+                                 RankMerge& statistics) {
   const Node& high = tree_.nodes()[step.node->below[1]];
   WorkLease lease(budget_, 0, "the triangulation of a border");
   distributed::DistributedOptions<D> options;
   options.gather_below = options_.gather_below.value_or(kGatherBelow<D>);
   options.limits = limits;
-  options.inner_merge = [&figures](std::uint64_t border) {
-    ++figures.inner_merges;
-    figures.inner_border_points += border;
+  options.inner_merge = [&statistics](std::uint64_t border) {
+    ++statistics.inner_merges;
+    statistics.inner_border_points += border;
   };
   options.triangulate = [&](std::vector<Point<D>> points) {
     const std::uint64_t bytes =
@@ -166,7 +166,7 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
     std::ranges::copy(std::exchange(points, {}), slab.begin());
     Triangulation<D> mesh;
     const StageTimer timer(engine_.times(), Stage::kMerge);
-    const WorkTimer work(figures.triangulation_seconds);
+    const WorkTimer work(statistics.triangulation_seconds);
     isolated([&] {
       mesh = border_delaunay<D>(std::move(slab), options_.asked.kernel, &lease, task.after[1]);
     });
@@ -174,10 +174,10 @@ void RankMerges<D>::merge_halves(const Step& step, ItemLimits limits, Task& task
   };
   const HalvesMerged merged =
       distributed::merge_halves<D>(*share_, {step.ranks, step.node->first}, high.first,
-                                   static_cast<unsigned>(figures_.size()), options);
-  figures.exposed_simplices = merged.put_apart;
-  figures.border_points = merged.border;
-  figures.retriangulated = merged.triangulated;
+                                   static_cast<unsigned>(statistics_.size()), options);
+  statistics.exposed_simplices = merged.put_apart;
+  statistics.border_points = merged.border;
+  statistics.retriangulated = merged.triangulated;
   task.after[0].points = merged.triangulated;
   engine_.count_retriangulated(merged.triangulated);
 }
@@ -193,7 +193,7 @@ void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& tas
   {
     const StageTimer timer(engine_.times(), Stage::kFinality);
     const WorkTimer work(task.after[0].seconds);
-    finals = share_->settle(exposure_of_new(figures_.size() + 1));
+    finals = share_->settle(exposure_of_new(statistics_.size() + 1));
   }
   const WorkTimer work(task.after[2].seconds);
   const std::size_t all = finals.size();
@@ -284,7 +284,7 @@ std::optional<SectionDraft> RankMerges<D>::emit(Border<D> finals, std::uint32_t 
   const StageTimer timer(engine_.times(), Stage::kFinality);
   const std::vector<Fate> fates(finals.simplices.size(), Fate::kFinal);
   Settled<D> settled =
-      detail::settle<D>(MergeToSettle<D>{.block = {}, .merged = finals, .fates = fates}, output_);
+      stream::settle<D>(MergeToSettle<D>{.block = {}, .merged = finals, .fates = fates}, output_);
   engine_.count_left_out(settled.left_out);
   SectionDraft draft;
   draft.section.section = section;
@@ -313,4 +313,4 @@ void RankMerges<D>::keep(std::optional<SectionDraft> draft) {
 template class RankMerges<2>;
 template class RankMerges<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

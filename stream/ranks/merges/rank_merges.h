@@ -12,7 +12,7 @@
 #include "stream/ranks/rank_tree.h"
 #include "stream/triangulate/tile_engine.h"
 
-namespace spillway::detail {
+namespace spillway::ranks {
 
 /// Merges what the tiles of ranks have left, up the tree of ranks (Algorithms 2 and 3 of Funke,
 /// Sanders 2017). The border of a node stays with the ranks that made it: each holds a share of its
@@ -30,7 +30,7 @@ class RankMerges {
 
   /// What this rank's share has become: sections in the order of the stream, and how it went.
   [[nodiscard]] std::vector<SectionDraft> take_sections() { return std::move(sections_); }
-  [[nodiscard]] std::vector<RankMerge> take_figures() { return std::move(figures_); }
+  [[nodiscard]] std::vector<RankMerge> take_statistics() { return std::move(statistics_); }
 
  private:
   using Node = typename RankTree<D>::Node;
@@ -51,7 +51,7 @@ class RankMerges {
   [[nodiscard]] std::vector<std::uint32_t> exposure_of_new(std::size_t merges_done) const;
   void merge(const Step& step);
   void merge_halves(const Step& step, distributed::ItemLimits limits, Task& task,
-                    RankMerge& figures);
+                    RankMerge& statistics);
   void settle(const Step& step, const distributed::ItemLimits& limits, Task& task);
   [[nodiscard]] Told news_of(const std::vector<Corners>& finals);
   [[nodiscard]] Border<D> fetch_used(const distributed::Group& group, const News& asked,
@@ -74,7 +74,7 @@ class RankMerges {
   std::vector<std::uint8_t> held_;  ///< by vertex of the share, whether its simplices have it
   ShrinkingLease kept_;             ///< of sections
   std::vector<SectionDraft> sections_;
-  std::vector<RankMerge> figures_;
+  std::vector<RankMerge> statistics_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::ranks

@@ -8,7 +8,7 @@
 
 #include "stream/source/condition/condition_parser.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 Condition::Condition(const std::string& text) : text_(text) {
   ConditionParser parser(text);
@@ -27,4 +27,4 @@ std::vector<bool> Condition::holds(std::span<const std::vector<double>> columns,
   return all;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// Which points are wanted, in words: "intensity > 200 and class in (2, 9)". docs/attributes.md
 /// ("Conditions") has the grammar. Copies share what was read.
@@ -37,4 +39,4 @@ inline constexpr const char* kFirstReturn = "first";
 inline constexpr const char* kLastReturn = "last";
 inline constexpr const char* kSingleReturn = "single";
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "formats/points/attributes/attribute_names.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 constexpr std::size_t kDeepest = 100;
@@ -220,4 +220,4 @@ std::size_t ConditionParser::number_of_name(const std::string& name) {
   return names_.size() - 1;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

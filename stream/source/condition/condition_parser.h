@@ -10,7 +10,7 @@
 
 #include "stream/source/condition/condition.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A part of a condition, asked of one point by its numbers, one for each name.
 class Condition::Node {
@@ -71,4 +71,4 @@ class ConditionParser {
   std::vector<std::string> names_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

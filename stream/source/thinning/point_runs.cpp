@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Points of a run that are read at a time.
@@ -94,4 +94,4 @@ bool PointRuns::Merge::next(std::vector<RunPoint>& points, std::size_t most) {
   return !points.empty();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

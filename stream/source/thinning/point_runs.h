@@ -13,7 +13,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A point, what belongs to it, and its place among others.
 struct RunPoint {
@@ -74,4 +74,4 @@ class PointRuns {
   std::optional<Merge> merge_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Most files that the points of a pass are put aside to.
@@ -81,10 +81,11 @@ Thinning::Cell Thinning::cell_of(const WorldPoint& world) const {
   for (int k = 0; k < options_.dimension; ++k) {
     cell[k] = std::floor(world[k] / options_.cell);
     if (!(std::abs(cell[k]) <= kLargestCell)) {
-      throw Error(fmt::format("thinning: cells of {} are too small to count up to a coordinate of "
-                              "{}; choose larger ones",
-                              options_.cell, world[k]),
-                  ErrorCode::kInvalidArgument);
+      throw Failure(
+          fmt::format("thinning: cells of {} are too small to count up to a coordinate of "
+                      "{}; choose larger ones",
+                      options_.cell, world[k]),
+          ErrorCode::kInvalidArgument);
     }
   }
   return cell;
@@ -297,4 +298,4 @@ bool Thinning::next(PointBlock& block) {
   return block.size() > 0;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

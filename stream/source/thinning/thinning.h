@@ -18,7 +18,7 @@
 #include "stream/points/point_buffer.h"
 #include "stream/source/thinning/point_runs.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The part of a memory limit that thinning may take, as its divisor: points that wait to be
 /// spilled and the last cells are in memory at the same time.
@@ -37,8 +37,8 @@ struct ThinningOptions {
   ThinChoice choice = ThinChoice::kFirst;
   /// Axes that have cells: 2 or 3. kLowest and kHighest look at columns, so always 2.
   int dimension = 2;
-  std::optional<Lattice> lattice{};  ///< the points come as integers of it
-  std::uint64_t memory = 0;          ///< bytes to keep to, a few MiB at least
+  std::optional<IntegerLattice> lattice{};  ///< the points come as integers of it
+  std::uint64_t memory = 0;                 ///< bytes to keep to, a few MiB at least
   ThinningProgress progress{};
 };
 
@@ -56,7 +56,7 @@ class Thinning {
   /// Points come with attributes of this layout. To be called before any comes.
   void carry(const AttributeLayout& attributes);
 
-  /// Takes points, each with its index; indices ascend. Throws Error if cells are too small to be
+  /// Takes points, each with its index; indices ascend. Throws Failure if cells are too small to be
   /// counted.
   void add(const PointBlock& block);
 
@@ -126,4 +126,4 @@ class Thinning {
   std::uint64_t done_ = 0;       ///< of these
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 struct Choice {
@@ -63,4 +63,4 @@ std::int32_t CutLookup::add(std::vector<TileCell> cells, const Box<3>& region, i
   return static_cast<std::int32_t>(number);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -6,7 +6,7 @@
 
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A cut of space: below `value` on `axis`, and not below. On each side there is another cut or a
 /// tile, told by a reference: the cut's number, or -1 - the tile's.
@@ -43,4 +43,4 @@ class CutLookup {
   int depth_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Cuts of a tile that the lookup does without, and of all tiles, one in so many.
@@ -122,4 +122,4 @@ void CutTree::split(std::uint32_t tile, std::span<const DivisionCut> cuts) {
   renew_lookup();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -11,7 +11,7 @@
 #include "src/geometry/framed_point.h"
 #include "stream/tiles/cuts/cut_lookup.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A cut of a part that came of the cuts before it, numbered from 0 on: each leaves its number to
 /// what is below, and what is not gets the next one.
@@ -90,4 +90,4 @@ class CutTree {
   std::uint32_t all_cuts_since_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
   const std::size_t count = block.points.size();
@@ -36,4 +36,4 @@ void DealtPoints::deal(const CutTree& cuts, const PointBlock& block) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

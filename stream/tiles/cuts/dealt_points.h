@@ -9,7 +9,7 @@
 #include "stream/points/points_view.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points of one tile, side by side.
 struct PointRun {
@@ -35,4 +35,4 @@ struct DealtPoints {
   std::vector<std::uint32_t> tile_;  ///< by point of the block
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -14,7 +14,7 @@
 #include "src/geometry/box.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Points that are triangulated: for each part, and at most.
@@ -189,4 +189,4 @@ std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> samp
 template std::vector<DivisionCut> divide_sample<2>(std::span<const LatticePoint>, std::size_t);
 template std::vector<DivisionCut> divide_sample<3>(std::span<const LatticePoint>, std::size_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -8,7 +8,7 @@
 #include "src/geometry/framed_point.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The cuts that divide space into about `parts` parts with equally many points, of a sample of
 /// all. A cut is across the longest side of a cell, unless a triangulation of some of the sample
@@ -34,4 +34,4 @@ std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std
 std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
                                               std::size_t parts, int dimension);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

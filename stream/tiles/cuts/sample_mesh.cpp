@@ -6,7 +6,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/delaunay.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Points that are triangulated at first, and so many times more each time.
@@ -26,7 +26,7 @@ Triangulation<D> triangulate_some(std::span<const LatticePoint> sample, std::siz
       // Not every n-th, as points may have a period.
       points.push_back(mesh_point<D>(sample[std::min(i + mix64(i) % step, sample.size() - 1)]));
     }
-    Triangulation<D> mesh = delaunay<D>(points, {.threads = 1});
+    Triangulation<D> mesh = delaunay_triangulation<D>(points, {.threads = 1});
     if (step == 1 || wanted == most || mesh.finite_count() > kManySimplices * points.size()) {
       return mesh;
     }
@@ -85,4 +85,4 @@ template struct SampleMesh<3>;
 template SampleMesh<2> triangulate_sample(std::span<const LatticePoint>, std::size_t);
 template SampleMesh<3> triangulate_sample(std::span<const LatticePoint>, std::size_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/geometry/point.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Some points of a sample in a cell, and the simplices of their triangulation that have all
 /// corners in it. It tells what a cut would cross.
@@ -33,4 +33,4 @@ SampleMesh<D> triangulate_sample(std::span<const LatticePoint> sample, std::size
 template <int D>
 Point<D> mesh_point(const LatticePoint& point);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -9,7 +9,7 @@
 #include "src/delaunay/division/filled_share.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The smaller share is at least this one, if that can be.
@@ -269,4 +269,4 @@ std::optional<Cut> choose_cut(const CrowdedTile& tile) {
       {.sample = sample, .weight = tile.weight, .boxes = boxes, .box = tile.box});
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

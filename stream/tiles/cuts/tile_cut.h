@@ -14,7 +14,7 @@
 #include "stream/tiles/cuts/cut_tree.h"
 #include "stream/tiles/storage/tile_segment.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// What is known of a tile that has become too large.
 struct CrowdedTile {
@@ -74,4 +74,4 @@ double aspect_by_cuts(const Box<3>& box, const Box<3>& cell, int dimension);
 /// themselves: in compact boxes, they would be a sixteenth of the capacity each, or more.
 bool too_long(double points, double aspect, std::size_t capacity);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

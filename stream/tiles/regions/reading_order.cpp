@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Cells that are looked at closely before one is chosen.
@@ -109,4 +109,4 @@ std::vector<std::size_t> reading_order(std::span<const WaitingCell> cells,
   return Reading(cells, points).order();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::stream {
 
 /// Cells that wait for units of the input.
 struct WaitingCell {
@@ -20,4 +22,4 @@ struct WaitingCell {
 std::vector<std::size_t> reading_order(std::span<const WaitingCell> cells,
                                        std::span<const double> points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -12,7 +12,7 @@
 #include "src/delaunay/division/cut_rule.h"
 #include "stream/tiles/regions/reading_order.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The lower side of a cut gets this share of the points, at the least and at the most.
@@ -336,4 +336,4 @@ std::vector<std::size_t> nested_order(std::span<const InputRegion> regions, int 
 
 bool pays(const RegionPlan& plan) { return plan.done_early >= kLeastEarly; }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "stream/points/input_region.h"
 #include "stream/tiles/cuts/cut_tree.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Which tiles to begin with, and in which order to read, so that tiles are complete early: decided
 /// by the boxes of regions alone. A tile that is cut later on stays a *cell* of this plan.
@@ -47,4 +47,4 @@ std::vector<std::size_t> nested_order(std::span<const InputRegion> regions, int 
 /// Whether enough tiles are complete early for a run that triangulates while it reads.
 bool pays(const RegionPlan& plan);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// The first cells have the longest side of the box divided by two to this power.
@@ -259,4 +259,4 @@ PointSketch<D> CellSketch::sketch() const {
 template PointSketch<2> CellSketch::sketch<2>() const;
 template PointSketch<3> CellSketch::sketch<3>() const;
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

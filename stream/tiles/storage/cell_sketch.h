@@ -14,7 +14,7 @@
 #include "src/geometry/constructions/plate.h"
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Where points lie: a tight box and a plate around those of each cell of a grid in which some lie.
 /// The cells are as small as they can be so that there are not too many, and become larger as
@@ -101,4 +101,4 @@ class CellSketch {
   std::unordered_map<Number, Cell, Hash> cells_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,7 @@
 
 #include "stream/points/point_buffer.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 std::vector<HeldPoints> part_points(HeldPoints held, const Cut& first,
                                     const std::array<Cut, 2>& second) {
@@ -43,4 +43,4 @@ std::vector<HeldPoints> part_points(HeldPoints held, const Cut& first,
   return parts;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "src/delaunay/division/cut.h"
 #include "stream/tiles/storage/tile.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// A cut that all points lie below.
 constexpr Cut kNoCut{.axis = 0, .value = std::numeric_limits<double>::infinity()};
@@ -18,4 +18,4 @@ constexpr Cut kNoCut{.axis = 0, .value = std::numeric_limits<double>::infinity()
 std::vector<HeldPoints> part_points(HeldPoints held, const Cut& first,
                                     const std::array<Cut, 2>& second);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

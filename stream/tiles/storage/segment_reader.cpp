@@ -4,7 +4,7 @@
 
 #include "stream/points/encoded_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// Bytes that are read at a time, if a block is not larger.
@@ -51,4 +51,4 @@ void SegmentReader::read(const FileStretch& stretch, StoredBlocks& blocks) {
   points_ += points;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -7,7 +7,7 @@
 #include "src/error.h"
 #include "stream/tiles/storage/tile_segment.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Some blocks of points as they lay in a scratch file.
 struct StoredBlocks {
@@ -26,7 +26,7 @@ class SegmentReader {
       : segments_(std::move(segments)), run_(last_run) {}
 
   /// Replaces `blocks` by the next ones, at least one, all of one segment; false at the end. Throws
-  /// Error if they cannot be read.
+  /// Failure if they cannot be read.
   bool fetch(StoredBlocks& blocks);
 
   /// Of the blocks so far.
@@ -49,4 +49,4 @@ class SegmentReader {
   std::uint64_t points_ = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -2,7 +2,7 @@
 
 #include "stream/points/encoded_points.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// As in a tile's file, some pages at a time.
 void HeldPoints::buffer_state(StateWriter& state) {
@@ -52,4 +52,4 @@ std::uint64_t StoredTile::held_bytes() const {
   return bytes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

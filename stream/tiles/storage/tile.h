@@ -15,7 +15,7 @@
 #include "stream/points/point_buffer.h"
 #include "stream/tiles/storage/tile_segment.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Points that wait, side by side in the order of their arrival.
 struct HeldPoints {
@@ -104,4 +104,4 @@ struct StoredTile {
   [[nodiscard]] std::uint64_t held_bytes() const;  ///< of points in memory that are not encoded
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -10,7 +10,7 @@
 #include "src/geometry/point.h"
 #include "stream/points/points_view.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The points of a tile, ready to be triangulated, in the order in which they were read.
 template <int D>
@@ -56,4 +56,4 @@ struct TilePoints {
 constexpr std::uint64_t kLoadedPointBytes =
     sizeof(LatticePoint) + sizeof(std::uint64_t) + sizeof(std::uint32_t);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <optional>
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 bool side_by_side(const TileSegment& a, const TileSegment& b) {
@@ -87,4 +87,4 @@ void join_all_segments(std::vector<TileSegment>& segments,
                                       std::make_move_iterator(joined.end()));
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

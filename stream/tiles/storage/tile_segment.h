@@ -11,7 +11,7 @@
 #include "src/geometry/box.h"
 #include "stream/tiles/storage/cell_sketch.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// Where bytes that follow each other in a scratch file lie, or will lie: the file grows by them in
 /// the order in which they are spilled, but later.
@@ -79,4 +79,4 @@ void join_segments(std::vector<TileSegment>& segments, std::size_t most, int dim
 void join_all_segments(std::vector<TileSegment>& segments,
                        const std::function<bool(std::uint64_t, std::uint64_t)>& apart);
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

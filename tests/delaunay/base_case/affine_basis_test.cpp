@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(AffineBasis, TellsTheDimensionOfTheHull) {
@@ -14,7 +14,7 @@ TEST(AffineBasis, TellsTheDimensionOfTheHull) {
   using P2 = std::vector<Point<2>>;
   EXPECT_EQ(affine_basis<2>(P2{{1, 1}, {1, 1}}).size(), 1U);
   EXPECT_EQ(affine_basis<2>(P2{{1, 1}, {2, 2}, {3, 3}}).size(), 2U);
-  EXPECT_THAT(affine_basis<2>(P2{{1, 1}, {2, 2}, {3, 3}, {3, 4}}), testing::ElementsAre(0, 1, 3));
+  EXPECT_THAT(affine_basis<2>(P2{{1, 1}, {2, 2}, {3, 3}, {3, 4}}), ::testing::ElementsAre(0, 1, 3));
   using P3 = std::vector<Point<3>>;
   EXPECT_EQ(affine_basis<3>(P3{{0, 0, 0}, {1, 2, 3}, {2, 4, 6}}).size(), 2U);
   EXPECT_EQ(affine_basis<3>(P3{{0, 0, 5}, {1, 2, 5}, {2, 1, 5}, {7, 7, 5}}).size(), 3U);
@@ -29,4 +29,4 @@ TEST(AffineBasis, IsExactForNearlyCollinearPoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -39,17 +39,19 @@ TEST(BaseCase, OfCollinearPointsHasNoSimplices) {
   const auto t = triangulated<3>({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {1, 1, 1}});
   EXPECT_EQ(t.dimension, 1);
   EXPECT_TRUE(t.simplices.empty());
-  EXPECT_THAT(t.duplicates, testing::ElementsAre(Duplicate{103, 101}));
+  EXPECT_THAT(t.duplicates, ::testing::ElementsAre(DroppedDuplicate{103, 101}));
 }
 
 TEST(BaseCase, KeepsTheDuplicateOfLowestInputIndex) {
   const auto flat = triangulated<2>({{5, 5}, {5, 5}, {5, 5}}, {9, 3, 6});
-  EXPECT_THAT(flat.duplicates, testing::ElementsAre(Duplicate{100, 101}, Duplicate{102, 101}));
+  EXPECT_THAT(flat.duplicates,
+              ::testing::ElementsAre(DroppedDuplicate{100, 101}, DroppedDuplicate{102, 101}));
   const auto full =
       triangulated<2>({{5, 5}, {0, 0}, {5, 5}, {9, 0}, {5, 5}, {5, 9}}, {8, 1, 4, 2, 0, 5});
-  EXPECT_THAT(full.duplicates, testing::ElementsAre(Duplicate{100, 104}, Duplicate{102, 104}));
+  EXPECT_THAT(full.duplicates,
+              ::testing::ElementsAre(DroppedDuplicate{100, 104}, DroppedDuplicate{102, 104}));
   for (const Simplex<2>& s : full.simplices) {
-    EXPECT_THAT(s.vertices, testing::Not(testing::Contains(testing::AnyOf(100U, 102U))));
+    EXPECT_THAT(s.vertices, ::testing::Not(::testing::Contains(::testing::AnyOf(100U, 102U))));
   }
 }
 
@@ -62,4 +64,4 @@ TEST(BaseCase, IsFastForManyCollinearPointsAndOneBeside) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -74,4 +74,4 @@ TEST(Acceptance, AnswersAsSoonAsABatchIsFull) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

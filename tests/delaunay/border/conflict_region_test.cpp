@@ -10,7 +10,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr VertexId kInf = kInfiniteVertex;
@@ -56,8 +56,8 @@ struct RandomSimplex {
 };
 
 template <typename Dimension>
-class ConflictRegionTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class ConflictRegionTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(ConflictRegionTest, Dimensions);
 
 TYPED_TEST(ConflictRegionTest, HoldsThePointsThatDestroyASimplexAndHardlyOthers) {
@@ -145,4 +145,4 @@ TYPED_TEST(ConflictRegionTest, IsTightUnlessTheSimplexIsFlat) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "src/delaunay/delaunay.h"
 #include "src/geometry/box.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -52,13 +52,14 @@ Boxes<D> pair_of_boxes(double x) {
 }
 
 template <typename Dimension>
-class ExposureOfSimplices : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class ExposureOfSimplices : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(ExposureOfSimplices, Dimensions);
 
 TYPED_TEST(ExposureOfSimplices, IsWhatTheirRegionsSayOneByOne) {
   constexpr int kD = TypeParam::value;
-  const Triangulation<kD> mesh = delaunay<kD>(random_points<kD>(2000, 1), {.threads = 1});
+  const Triangulation<kD> mesh =
+      delaunay_triangulation<kD>(random_points<kD>(2000, 1), {.threads = 1});
   const std::vector<Point<kD>> points(mesh.points.begin(), mesh.points.end());
   std::vector<std::array<VertexId, kD + 1>> simplices;
   mesh.for_each_simplex(
@@ -85,9 +86,10 @@ TYPED_TEST(ExposureOfSimplices, IsWhatTheirRegionsSayOneByOne) {
     for (std::uint32_t& bits : expected) bits &= ~3U;
     EXPECT_EQ((exposure_by_tree<kD, Boxes<kD>>(simplices, points, trees, 2)), expected)
         << "trees before are not asked";
-    EXPECT_THAT((exposure_by_tree<kD, Boxes<kD>>(simplices, points, trees, 3)), testing::Each(0U));
+    EXPECT_THAT((exposure_by_tree<kD, Boxes<kD>>(simplices, points, trees, 3)),
+                ::testing::Each(0U));
   });
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr VertexId kInf = kInfiniteVertex;
@@ -42,4 +42,4 @@ TEST(FacingSides, BoxesThatOverlapOrTouchFaceNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

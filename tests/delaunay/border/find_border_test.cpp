@@ -8,12 +8,12 @@
 #include <random>
 
 #include "src/delaunay/base_case/base_case.h"
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Whether one of the others destroys a simplex of this triangulation.
@@ -67,16 +67,16 @@ struct Halves {
     };
     fill(left_points, 0);
     fill(right_points, 201);
-    left = delaunay<D>(left_points, {.threads = 1});
+    left = delaunay_triangulation<D>(left_points, {.threads = 1});
     std::vector<VertexId> index(right_points.size());
     std::iota(index.begin(), index.end(), VertexId{0});
-    right = divide<D>(right_points, index, {.leaf_size = 40});
+    right = divide<D>(right_points, index, {.leaf_points = 40});
   }
 };
 
 template <typename Dimension>
-class FindBorder : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class FindBorder : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(FindBorder, Dimensions);
 
 TYPED_TEST(FindBorder, NeverCallsASimplexFinalThatASiblingDestroys) {
@@ -206,7 +206,7 @@ TEST(FindBorderInSpace, BorderPickedFromARotatedLatticeHasAllThatASiblingDestroy
   }
   std::vector<VertexId> index(right.size());
   std::iota(index.begin(), index.end(), VertexId{0});
-  const Part<3> sibling = divide<3>(right, index, {.leaf_size = 40});
+  const Part<3> sibling = divide<3>(right, index, {.leaf_points = 40});
   const PickedBorder<3> border = expect_all_destroyed<3>(left, sibling, right);
   std::array<std::size_t, 2> vague{};  // left out, picked
   for_each_region<3>(
@@ -225,4 +225,4 @@ TEST(FindBorderInSpace, BorderPickedFromARotatedLatticeHasAllThatASiblingDestroy
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -21,7 +21,7 @@
 #include "tests/delaunay/cgal_oracle.h"
 #include "tests/delaunay/verify.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Points of a leaf, or what is merged.
@@ -106,8 +106,8 @@ class Merges {
     const auto triangulate_border = [&](SlabArray<Point<D>> border, std::size_t part_size, Task&) {
       EXPECT_EQ(part_size, part.size());
       border_points_ = border.size();
-      return delaunay<D>(border.span(),
-                         {.threads = 1, .base_case_size = border.size() / choices_.border_lists});
+      return delaunay_triangulation<D>(
+          border.span(), {.threads = 1, .leaf_points = border.size() / choices_.border_lists});
     };
     return merge<D>(mesh_, marks_, boxes_, part, surfaces,
                     choices_.may_stay_open && &part == &root_, triangulate_border, task_);
@@ -133,7 +133,7 @@ class Merges {
     }
     if (surface.open) {
       for (VertexId v = part.begin; v < part.end; ++v) {
-        const auto is_dropped = [v](const Duplicate& d) { return d.dropped == v; };
+        const auto is_dropped = [v](const DroppedDuplicate& d) { return d.dropped == v; };
         if (std::ranges::none_of(leaf.duplicates, is_dropped)) surface.vertices.push_back(v);
       }
     }
@@ -166,7 +166,7 @@ std::vector<VertexId> distinct_vertices(const std::vector<Point<D>>& points) {
 
 template <int D>
 void expect_triangulation_of_all(const Merges<D>& merges) {
-  EXPECT_THAT(verify<D>(merges.mesh()), testing::IsEmpty());
+  EXPECT_THAT(verify<D>(merges.mesh()), ::testing::IsEmpty());
   const auto simplices = sorted_simplices<D>(merges.mesh());
   EXPECT_EQ(simplices, cgal_simplices<D>(merges.points()));
   const PartSurface& surface = merges.surface();
@@ -174,7 +174,7 @@ void expect_triangulation_of_all(const Merges<D>& merges) {
   EXPECT_EQ(surface.open, surface.dimension < D);
   if (surface.open) {
     EXPECT_EQ(surface.vertices, distinct_vertices<D>(merges.points()));
-    EXPECT_THAT(surface.hull, testing::IsEmpty());
+    EXPECT_THAT(surface.hull, ::testing::IsEmpty());
   } else {
     EXPECT_EQ(surface.hull.size(), cgal_hull_facets<D>(merges.points()));
   }
@@ -189,7 +189,7 @@ template <int D>
 void expect_triangulation_of_all(const Tree<D>& tree) {
   for (const bool kernel_tells : {false, true}) {
     for (const std::size_t border_lists : {1, 3}) {
-      SCOPED_TRACE(testing::Message() << kernel_tells << ", lists of borders: " << border_lists);
+      SCOPED_TRACE(::testing::Message() << kernel_tells << ", lists of borders: " << border_lists);
       expect_triangulation_of_all<D>(
           Merges<D>(tree, {.kernel_tells = kernel_tells, .border_lists = border_lists}));
     }
@@ -240,8 +240,8 @@ Tree<D> lattice_leaves(std::size_t leaves, int side, const Has& has) {
 }
 
 template <typename Dimension>
-class MergeTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class MergeTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(MergeTest, Dimensions);
 
 TYPED_TEST(MergeTest, OfTwoIsTheTriangulationOfAllPoints) {
@@ -370,7 +370,7 @@ TYPED_TEST(MergeTest, StaysOpenWhereMostPointsAreInBordersIfItMay) {
   const Merges<kD> merges(tree, {.may_stay_open = true});
   EXPECT_TRUE(merges.surface().open);
   EXPECT_EQ(merges.surface().dimension, kD);
-  EXPECT_THAT(merges.surface().vertices, testing::IsEmpty()) << "the caller sets them";
+  EXPECT_THAT(merges.surface().vertices, ::testing::IsEmpty()) << "the caller sets them";
   EXPECT_EQ(merges.border_points(), 0U) << "nothing is triangulated in vain";
   expect_triangulation_of_all<kD>(tree);
 }
@@ -400,4 +400,4 @@ TYPED_TEST(MergeTest, TellsItsStepsInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

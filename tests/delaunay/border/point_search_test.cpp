@@ -9,7 +9,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Points in a tree of parts with their boxes.
@@ -23,7 +23,7 @@ struct DividedPoints {
   explicit DividedPoints(std::vector<Point<D>> some) : points(std::move(some)) {
     std::vector<VertexId> index(points.size());
     std::iota(index.begin(), index.end(), VertexId{0});
-    root = divide<D>(points, index, {.leaf_size = 200});
+    root = divide<D>(points, index, {.leaf_points = 200});
     boxes.resize(root.list + 1);
     set_boxes(root);
     parts = {&root};
@@ -37,8 +37,8 @@ struct DividedPoints {
 };
 
 template <typename Dimension>
-class PointSearchTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class PointSearchTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(PointSearchTest, Dimensions);
 
 template <int D>
@@ -142,4 +142,4 @@ TEST(PointSearch, AsksNoMoreWhenItsStepsHaveNotBeenWorthIt) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(RunBoxes, EachIsTightAroundWhatIsBelowIt) {
@@ -34,4 +34,4 @@ TEST(RunBoxes, OfFewPointsAndOfNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

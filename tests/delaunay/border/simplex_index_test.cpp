@@ -10,7 +10,7 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Index = SimplexIndex<3>;
@@ -59,4 +59,4 @@ TEST(SimplexIndex, OfNothingFindsNothing) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,10 +7,10 @@
 
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-class ConcurrentIndexTest : public testing::TestWithParam<unsigned> {};
+class ConcurrentIndexTest : public ::testing::TestWithParam<unsigned> {};
 
 TEST_P(ConcurrentIndexTest, FindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
   with_threads(GetParam(), [] {
@@ -29,7 +29,7 @@ TEST_P(ConcurrentIndexTest, FindsAllItemsInsertedAtOnceInspiteOfEqualHashes) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, ConcurrentIndexTest, testing::Values(1, 2, 4));
+INSTANTIATE_TEST_SUITE_P(Threads, ConcurrentIndexTest, ::testing::Values(1, 2, 4));
 
 TEST(SimplexHash, SimplexesAreTheSameUpToEvenPermutationsOnly) {
   const std::array<VertexId, 4> simplex{7, 3, kInfiniteVertex, 0};
@@ -50,4 +50,4 @@ TEST(SimplexHash, SimplexesAreTheSameUpToEvenPermutationsOnly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 Task work(double seconds, std::size_t grains = 1) {
@@ -51,4 +51,4 @@ TEST(GreedyMakespan, TakesTheDeepestWorkFirst) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kUnit = 64;  ///< slabs are multiples of it
 
-class KeptSlabsTest : public testing::Test {
+class KeptSlabsTest : public ::testing::Test {
  protected:
   KeptSlabsTest() {
     for (const std::size_t units : {30, 10, 20}) {
@@ -51,4 +51,4 @@ TEST_F(KeptSlabsTest, AreKeptIfTheyAreNotLargerWhenTheLargerOnesAreReleased) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/division/divide.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Points on an ellipse whose half-axes are 3 and `height`.
@@ -90,7 +90,7 @@ bool stays_whole(std::vector<Point<2>> points) {
   std::vector<VertexId> index(points.size());
   for (VertexId v = 0; v < index.size(); ++v) index[v] = v;
   const DivideOptions options{
-      .leaf_size = 1000, .smallest_judged = 1000, .largest_undivided = 100'000};
+      .leaf_points = 1000, .smallest_judged = 1000, .largest_undivided = 100'000};
   return divide<2>(points, index, options).leaf();
 }
 
@@ -107,4 +107,4 @@ TEST(CutJudgement, ParallelLinesAreNotDivided) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

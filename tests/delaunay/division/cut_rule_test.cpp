@@ -10,7 +10,7 @@
 
 #include "src/delaunay/division/axis_rule.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 PointsToCut<2> told(std::vector<Point<2>>& sample) {
@@ -68,4 +68,4 @@ TEST(AxisRule, CutsTheLongestAxisWhereTheSchemesHasNoExtent) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

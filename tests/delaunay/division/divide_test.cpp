@@ -12,7 +12,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -53,7 +53,7 @@ void visit(const Part<D>& part, const F& f) {
 }
 
 TEST(Divide, KeepsEveryPointAndItsIndex) {
-  const Divided d = divided(random_points(5000, 1000), {.leaf_size = 50});
+  const Divided d = divided(random_points(5000, 1000), {.leaf_points = 50});
   std::vector<bool> seen(d.points.size());
   for (std::size_t i = 0; i < d.points.size(); ++i) {
     EXPECT_EQ(d.points[i], d.original[d.input_index[i]]);
@@ -63,7 +63,7 @@ TEST(Divide, KeepsEveryPointAndItsIndex) {
 }
 
 TEST(Divide, MakesDisjointTightBoxesAndSmallLeaves) {
-  const Divided d = divided(random_points(5000, 1000), {.leaf_size = 50, .children = 3});
+  const Divided d = divided(random_points(5000, 1000), {.leaf_points = 50, .children = 3});
   visit(d.root, [&](const Part<2>& part) {
     Box<2> tight;
     for (VertexId v = part.begin; v < part.end; ++v) tight.expand(d.points[v]);
@@ -91,7 +91,7 @@ TEST(Divide, MakesDisjointTightBoxesAndSmallLeaves) {
 }
 
 TEST(Divide, NeverSeparatesEqualPoints) {
-  const Divided d = divided(random_points(3000, 5), {.leaf_size = 10});
+  const Divided d = divided(random_points(3000, 5), {.leaf_points = 10});
   visit(d.root, [&](const Part<2>& part) {
     if (part.leaf() && part.size() > 10) {
       EXPECT_EQ(part.box.lo, part.box.hi);
@@ -109,7 +109,7 @@ TEST(Divide, FillsLeavesWhereAsked) {
   const auto leaf_sizes = [](bool fill) {
     std::vector<std::size_t> sizes;
     const Divided d = divided(random_points(400'000, 1'000'000),
-                              {.leaf_size = 20'000, .stop = {}, .fill_leaves = fill});
+                              {.leaf_points = 20'000, .stop = {}, .fill_leaves = fill});
     visit(d.root, [&](const Part<2>& part) {
       if (part.leaf()) sizes.push_back(part.size());
     });
@@ -125,7 +125,7 @@ TEST(Divide, CutsPointsOfWhichNearlyAllAreEqual) {
   std::vector<Point<2>> points(100'000, {3, 4});
   points[50'000] = {5, 4};
   points[70'000] = {1, 4};
-  const Divided d = divided(points, {.leaf_size = 10});
+  const Divided d = divided(points, {.leaf_points = 10});
   std::vector<std::size_t> sizes;
   visit(d.root, [&](const Part<2>& part) {
     if (part.leaf()) sizes.push_back(part.size());
@@ -134,13 +134,13 @@ TEST(Divide, CutsPointsOfWhichNearlyAllAreEqual) {
 }
 
 TEST(Divide, StopsAtPointsThatAreAllEqual) {
-  const Divided d = divided(std::vector<Point<2>>(1000, {3, 4}), {.leaf_size = 10});
+  const Divided d = divided(std::vector<Point<2>>(1000, {3, 4}), {.leaf_points = 10});
   EXPECT_TRUE(d.root.leaf());
   EXPECT_EQ(d.root.size(), 1000U);
 }
 
 TEST(Divide, HandlesNoPoints) {
-  const Divided d = divided({}, {.leaf_size = 10});
+  const Divided d = divided({}, {.leaf_points = 10});
   EXPECT_TRUE(d.root.leaf());
   EXPECT_TRUE(d.root.box.empty());
 }
@@ -151,7 +151,7 @@ TEST(Divide, CutsTheAxisThatTheSchemeSays) {
     wide[i] = {static_cast<double>(i % 25), static_cast<double>(i)};
   }
   const auto first_cut_axis = [&](Division scheme) {
-    const Divided d = divided(wide, {.leaf_size = 600, .scheme = scheme});
+    const Divided d = divided(wide, {.leaf_points = 600, .scheme = scheme});
     return d.root.children[0].box.hi[0] < d.root.children[1].box.lo[0] ? 0 : 1;
   };
   EXPECT_EQ(first_cut_axis(Division::kLongestExtent), 1);
@@ -162,7 +162,7 @@ TEST(Divide, CutsTheAxisThatTheSchemeSays) {
 TEST(Divide, CutsAnotherAxisWhereTheSchemesHasNoExtent) {
   std::vector<Point<2>> column(100);
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = {7, static_cast<double>(i)};
-  const Divided d = divided(column, {.leaf_size = 10, .scheme = Division::kConstantAxis});
+  const Divided d = divided(column, {.leaf_points = 10, .scheme = Division::kConstantAxis});
   EXPECT_FALSE(d.root.leaf());
 }
 
@@ -172,15 +172,15 @@ TEST(Divide, BalancesAGridWhoseRowsHaveTheSamplesPeriod) {
     for (int x = 0; x < 512; ++x) grid.push_back({static_cast<double>(x), static_cast<double>(y)});
   }
   const Divided d = divided(
-      grid, {.leaf_size = grid.size() / 2 + grid.size() / 10, .scheme = Division::kConstantAxis});
+      grid, {.leaf_points = grid.size() / 2 + grid.size() / 10, .scheme = Division::kConstantAxis});
   ASSERT_EQ(d.root.children.size(), 2U);
   EXPECT_NEAR(static_cast<double>(d.root.children[0].size()), grid.size() / 2.0, grid.size() * 0.1);
 }
 
 TEST(Divide, DoesNotDependOnTheNumberOfThreads) {
   const auto points = random_points(200'000, 1'000'000);
-  const Divided one = divided(points, {.leaf_size = 1000}, 1);
-  const Divided four = divided(points, {.leaf_size = 1000}, 4);
+  const Divided one = divided(points, {.leaf_points = 1000}, 1);
+  const Divided four = divided(points, {.leaf_points = 1000}, 4);
   EXPECT_EQ(one.input_index, four.input_index);
 }
 
@@ -194,8 +194,8 @@ int axis_between(const Part<D>& low, const Part<D>& high) {
 }
 
 template <typename Dimension>
-class DivideCuts : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class DivideCuts : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(DivideCuts, Dimensions);
 
 /// So many points whose first coordinate is 0, 1, ..., the others random, in any order.
@@ -220,7 +220,7 @@ TYPED_TEST(DivideCuts, LieBelowARunOfEqualCoordinatesOrAboveItIfThatIsTheLowest)
   const auto halves = [](const std::vector<std::size_t>& counts) {
     const auto points = runs<kD>(counts);
     const auto d = divided_points<kD>(
-        points, {.leaf_size = points.size() - 1, .scheme = Division::kConstantAxis});
+        points, {.leaf_points = points.size() - 1, .scheme = Division::kConstantAxis});
     EXPECT_EQ(d.root.children.size(), 2U);
     EXPECT_EQ(axis_between(d.root.children[0], d.root.children[1]), 0);
     return std::pair(d.root.children[0].size(), d.root.children[1].size());
@@ -246,7 +246,7 @@ TYPED_TEST(DivideCuts, GoAcrossAnotherAxisWhereAllPointsAreEqualOnOne) {
         for (double& c : p) c = coordinate(random);
         p[equal] = 7;
       }
-      const auto d = divided_points<kD>(points, {.leaf_size = 20, .scheme = scheme});
+      const auto d = divided_points<kD>(points, {.leaf_points = 20, .scheme = scheme});
       visit(d.root, [&](const Part<kD>& part) {
         EXPECT_EQ(part.leaf(), part.size() <= 20);
         if (part.leaf()) return;
@@ -270,7 +270,7 @@ TYPED_TEST(DivideCuts, NeverPartEqualPointsHoweverTheyAreFound) {
       }
       const auto d = divided_points<kD>(
           points,
-          {.leaf_size = 40, .children = children, .fill_leaves = fill, .smallest_judged = 50});
+          {.leaf_points = 40, .children = children, .fill_leaves = fill, .smallest_judged = 50});
       std::set<Point<kD>> seen;
       visit(d.root, [&](const Part<kD>& part) {
         if (!part.leaf()) return;
@@ -298,7 +298,7 @@ std::vector<Point<D>> two_clusters() {
 TYPED_TEST(DivideCuts, AreMovedToWhereFewSimplicesCross) {
   constexpr int kD = TypeParam::value;
   const auto below = [](DivideOptions options) {
-    options.leaf_size = 4999;
+    options.leaf_points = 4999;
     const auto d = divided_points<kD>(two_clusters<kD>(), options);
     EXPECT_EQ(axis_between(d.root.children[0], d.root.children[1]), 0);
     return d.root.children[0].size();
@@ -326,7 +326,7 @@ std::vector<Point<D>> two_sheets() {
 TYPED_TEST(DivideCuts, GoAcrossAShorterAxisWhereFewerSimplicesCross) {
   constexpr int kD = TypeParam::value;
   const auto cut_axis = [](DivideOptions options) {
-    options.leaf_size = 3999;
+    options.leaf_points = 3999;
     const auto d = divided_points<kD>(two_sheets<kD>(), options);
     for (const Part<kD>& part : d.root.children) {
       EXPECT_NEAR(static_cast<double>(part.size()), 4000.0 / options.children, 600);
@@ -343,7 +343,7 @@ TYPED_TEST(DivideCuts, ArePutOffOnlyForWhatIsHollowAndNotTooLarge) {
   constexpr int kD = TypeParam::value;
   const auto is_whole = [](const std::vector<Point<kD>>& points, std::size_t largest) {
     return divided_points<kD>(
-               points, {.leaf_size = 1000, .smallest_judged = 1000, .largest_undivided = largest})
+               points, {.leaf_points = 1000, .smallest_judged = 1000, .largest_undivided = largest})
         .root.leaf();
   };
   std::mt19937_64 random(7);
@@ -366,4 +366,4 @@ TYPED_TEST(DivideCuts, ArePutOffOnlyForWhatIsHollowAndNotTooLarge) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

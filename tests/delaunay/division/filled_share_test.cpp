@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D, typename Make>
@@ -49,4 +49,4 @@ TEST(FilledShare, TakesPointsWithoutExtentAndOfTheLargestOne) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -15,7 +15,7 @@
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Points = std::vector<Point<2>>;
@@ -49,17 +49,17 @@ std::vector<FamilyCase> planar_cases() {
   return cases;
 }
 
-class Kernel2dOfFamily : public testing::TestWithParam<FamilyCase> {};
+class Kernel2dOfFamily : public ::testing::TestWithParam<FamilyCase> {};
 
 TEST_P(Kernel2dOfFamily, EqualsCgal) {
   const bool collinear = GetParam().family == Family::kCollinear;  // CGAL takes quadratic time
   for (const std::uint64_t n : {10, 1'000, collinear ? 2'000 : 20'000}) {
     SCOPED_TRACE(n);
-    expect_equal_to_cgal(generate_points<2>({.family = GetParam().family, .count = n, .seed = 5}));
+    expect_equal_to_cgal(generated_points<2>({.family = GetParam().family, .count = n, .seed = 5}));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Kernel2dOfFamily, testing::ValuesIn(planar_cases()),
+INSTANTIATE_TEST_SUITE_P(Families, Kernel2dOfFamily, ::testing::ValuesIn(planar_cases()),
                          family_case_name);
 
 TEST(Kernel2d, EqualsCgalOnSmallHardSets) {
@@ -81,7 +81,7 @@ TEST(Kernel2d, EqualsCgalOnWheelsOfManySpokes) {
 
 TEST(Kernel2d, EqualsCgalWhateverThePowerOfTwo) {
   const Points lattice = random_integers(500, 20, 20);
-  const Points circle = generate_points<2>({.family = Family::kCircle, .count = 200});
+  const Points circle = generated_points<2>({.family = Family::kCircle, .count = 200});
   for (const int exponent : {-1074, -1050, -1000, -500, -1, 10, 500, 960, 1000}) {
     SCOPED_TRACE(exponent);
     expect_equal_to_cgal(scaled(lattice, exponent));
@@ -91,7 +91,7 @@ TEST(Kernel2d, EqualsCgalWhateverThePowerOfTwo) {
 
 TEST(Kernel2d, EqualsCgalAtHugeOffsets) {
   const Points lattice = random_integers(500, 25, 25);
-  const Points uniform = generate_points<2>({.family = Family::kUniform, .count = 500});
+  const Points uniform = generated_points<2>({.family = Family::kUniform, .count = 500});
   for (const double offset : {1e6, 1e9, 1e12, 1e15}) {
     SCOPED_TRACE(offset);
     expect_equal_to_cgal(moved(lattice, offset, -offset));
@@ -133,7 +133,7 @@ TEST(Kernel2d, EqualsCgalOnVerySmallBesideVeryLarge) {
 }
 
 TEST(Kernel2d, GivesTheSameSimplicesInTheSameOrderEveryTime) {
-  const Points points = generate_points<2>({.family = Family::kTerrain, .count = 3'000});
+  const Points points = generated_points<2>({.family = Family::kTerrain, .count = 3'000});
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   const auto run = [&] {
@@ -169,7 +169,7 @@ TEST(Kernel2d, RefusesMorePointsThanItCanNumber) {
   const std::vector<VertexId> basis{0, 1, 2};
   const BaseCaseInput<2> input{.points = std::span(few.data(), std::size_t{1} << 28),
                                .input_index = basis};
-  EXPECT_THROW(kernel_2d_base_case(input, basis), Error);
+  EXPECT_THROW(kernel_2d_base_case(input, basis), Failure);
 }
 
 TEST(Kernel2d, EqualsCgalWithFewLanes) {
@@ -180,4 +180,4 @@ TEST(Kernel2d, EqualsCgalWithFewLanes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -12,7 +12,9 @@
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::kernel_2d {
+namespace spillway::delaunay::kernel_2d {
+
+using namespace test;  // NOLINT(google-build-using-namespace): what tests share
 namespace {
 
 using Four = std::array<Point<2>, 4>;
@@ -253,4 +255,4 @@ TEST(Kernel2dPredicates, LatticesAreFoundWhateverTheirUnit) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::kernel_2d
+}  // namespace spillway::delaunay::kernel_2d

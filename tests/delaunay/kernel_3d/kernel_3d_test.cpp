@@ -16,7 +16,7 @@
 #include "tests/delaunay/kernel_sets.h"
 #include "tests/generators/family_cases.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Points = std::vector<Point<3>>;
@@ -50,7 +50,7 @@ Points random_integers(std::size_t count, std::uint64_t side, std::uint64_t heig
 }
 
 Points uniform(std::size_t count) {
-  return generate_points<3>({.family = Family::kUniform, .count = count, .seed = 5});
+  return generated_points<3>({.family = Family::kUniform, .count = count, .seed = 5});
 }
 
 std::vector<VertexId> indices(std::size_t count) {
@@ -65,7 +65,7 @@ std::vector<FamilyCase> spatial_cases() {
   return cases;
 }
 
-class Kernel3dOfFamily : public testing::TestWithParam<FamilyCase> {};
+class Kernel3dOfFamily : public ::testing::TestWithParam<FamilyCase> {};
 
 TEST_P(Kernel3dOfFamily, EqualsCgal) {
   const Family family = GetParam().family;
@@ -73,11 +73,11 @@ TEST_P(Kernel3dOfFamily, EqualsCgal) {
   const bool quadratic = family == Family::kLines || family == Family::kCollinear;
   for (const std::uint64_t n : {10, 300, quadratic ? 600 : 8'000}) {
     SCOPED_TRACE(n);
-    expect_equal_to_cgal(generate_points<3>({.family = family, .count = n, .seed = 5}));
+    expect_equal_to_cgal(generated_points<3>({.family = family, .count = n, .seed = 5}));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Kernel3dOfFamily, testing::ValuesIn(spatial_cases()),
+INSTANTIATE_TEST_SUITE_P(Families, Kernel3dOfFamily, ::testing::ValuesIn(spatial_cases()),
                          family_case_name);
 
 TEST(Kernel3d, EqualsCgalOnSmallHardSets) {
@@ -129,7 +129,7 @@ TEST(Kernel3d, EqualsCgalOnStarsOfManyCells) {
   // The centre, inserted late, is in conflict with thousands of cells at once.
   for (const std::uint64_t count : {60, 150, 400, 3'000}) {
     SCOPED_TRACE(count);
-    Points sphere = generate_points<3>({.family = Family::kCircle, .count = count, .seed = 2});
+    Points sphere = generated_points<3>({.family = Family::kCircle, .count = count, .seed = 2});
     sphere.push_back({0x1p-40, 0x1p-41, 0x1p-42});
     EXPECT_EQ(compare_kernel_with_cgal<3>(sphere, 1), "");
     Points needle(count, Point<3>{});
@@ -161,7 +161,7 @@ TEST(Kernel3d, EqualsCgalOnIntegerSpheres) {
 
 TEST(Kernel3d, EqualsCgalWhateverThePowerOfTwo) {
   const Points lattice = random_integers(400, 8, 8);
-  const Points sphere = generate_points<3>({.family = Family::kCircle, .count = 150});
+  const Points sphere = generated_points<3>({.family = Family::kCircle, .count = 150});
   for (const int exponent : {-1074, -1050, -1000, -500, -1, 10, 500, 960, 1000}) {
     SCOPED_TRACE(exponent);
     expect_equal_to_cgal(scaled(lattice, exponent));
@@ -235,7 +235,7 @@ TEST(Kernel3d, KeepsTheDuplicateOfLowestInputIndex) {
   std::reverse(index.begin(), index.end());
   const BaseCase<3> result = triangulate_base_case<3>({.points = points, .input_index = index});
   ASSERT_GT(result.duplicates.size(), 200U);
-  for (const Duplicate& d : result.duplicates) {
+  for (const DroppedDuplicate& d : result.duplicates) {
     EXPECT_EQ(points[d.dropped], points[d.kept]);
     EXPECT_GT(index[d.dropped], index[d.kept]);
   }
@@ -243,7 +243,7 @@ TEST(Kernel3d, KeepsTheDuplicateOfLowestInputIndex) {
 }
 
 TEST(Kernel3d, GivesTheSameSimplicesInTheSameOrderEveryTime) {
-  const Points points = generate_points<3>({.family = Family::kTerrain, .count = 3'000});
+  const Points points = generated_points<3>({.family = Family::kTerrain, .count = 3'000});
   const std::vector<VertexId> index = indices(points.size());
   const auto run = [&] {
     return triangulate_base_case<3>({.points = points, .input_index = index});
@@ -277,8 +277,8 @@ TEST(Kernel3d, RefusesMorePointsThanItCanNumber) {
   const std::vector<VertexId> basis{0, 1, 2, 3};
   const BaseCaseInput<3> input{.points = std::span(few.data(), std::size_t{1} << 28),
                                .input_index = basis};
-  EXPECT_THROW(kernel_3d_base_case(input, basis), Error);
+  EXPECT_THROW(kernel_3d_base_case(input, basis), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -19,7 +19,9 @@
 #include "src/generators/random.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::kernel_3d {
+namespace spillway::delaunay::kernel_3d {
+
+using namespace test;  // NOLINT(google-build-using-namespace): what tests share
 namespace {
 
 using FivePoints = std::array<Point<3>, 5>;
@@ -40,7 +42,8 @@ FivePoints near_sphere(Random& random, int bits) {
            std::cos(height)};
       for (double& c : p) c = std::ldexp(std::round(std::ldexp(c, bits)), -bits);
     }
-    const int side = spillway::detail::orientation<3>({points[0], points[1], points[2], points[3]});
+    const int side =
+        spillway::geometry::orientation<3>({points[0], points[1], points[2], points[3]});
     if (side < 0) std::swap(points[2], points[3]);
     if (side != 0) return points;
   }
@@ -173,7 +176,7 @@ TEST(Kernel3dPredicates, InSphereStagesAreRightWhereTheyAnswer) {
     if (random.below(4) == 0) {
       // Coordinates of very different size: more bits than one limb has.
       for (Point<3>& p : five) p[1] = std::ldexp(p[1], -30);
-      if (spillway::detail::orientation<3>({five[0], five[1], five[2], five[3]}) <= 0) continue;
+      if (spillway::geometry::orientation<3>({five[0], five[1], five[2], five[3]}) <= 0) continue;
     }
     const Scene scene(five);
     const int exact = exact_side(five);
@@ -308,4 +311,4 @@ TEST(Kernel3dPredicates, LimbsHoldTheLargestDifferences) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::kernel_3d
+}  // namespace spillway::delaunay::kernel_3d

@@ -8,7 +8,7 @@
 
 #include "src/generators/random.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Points = std::vector<Point<2>>;
@@ -132,4 +132,4 @@ TEST(HilbertOrder, EndsOnEqualPointsAndOnExtremeOnes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -16,12 +16,12 @@
 #include "tests/geometry/exact_sphere.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
 using Points = std::vector<Point<D>>;
-using testing::Random;
+using test::Random;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Count {
@@ -61,7 +61,7 @@ Count expect_true_claims(const Points<D>& points, const Box<D>& safe_box, std::s
     }
     std::array<Point<D>, D + 1> corners;
     for (int i = 0; i <= D; ++i) corners[i] = points[simplex.vertices[i]];
-    const bool inside = testing::ExactSphere<D>(corners).inside(safe_box);
+    const bool inside = test::ExactSphere<D>(corners).inside(safe_box);
     count.inside += inside ? 1 : 0;
     count.claimed += claimed ? 1 : 0;
     EXPECT_TRUE(inside || !claimed);
@@ -114,7 +114,7 @@ TYPED_TEST(KernelSafeBox, CgalsBaseCaseAnswersLikeTheOwnOne) {
     if (tested.dimension != D) continue;
     SCOPED_TRACE(family_names()[static_cast<std::size_t>(tested.family)]);
     const Points<D> points =
-        generate_points<D>({.family = tested.family, .count = 150, .dimension = D, .seed = 6});
+        generated_points<D>({.family = tested.family, .count = 150, .dimension = D, .seed = 6});
     const Box<D> safe_box = random_safe_box<D>(points, random);
     expect_true_claims<D>(points, safe_box, 2, Kernel::kCgal);
     const BaseCase<D> own = asked<D>(points, safe_box, Kernel::kSpillway, true);
@@ -132,7 +132,7 @@ TYPED_TEST(KernelSafeBox, ClaimsOnlyWhatIsTrueOfAllFamilies) {
     if (tested.dimension != D) continue;
     SCOPED_TRACE(family_names()[static_cast<std::size_t>(tested.family)]);
     const Points<D> points =
-        generate_points<D>({.family = tested.family, .count = 200, .dimension = D, .seed = 5});
+        generated_points<D>({.family = tested.family, .count = 200, .dimension = D, .seed = 5});
     for (int trial = 0; trial < 3; ++trial) {
       expect_true_claims<D>(points, random_safe_box<D>(points, random), 3);
     }
@@ -185,7 +185,7 @@ TYPED_TEST(KernelSafeBox, ClaimsOnlyWhatIsTrueOfTouchingSpheres) {
 TYPED_TEST(KernelSafeBox, ClaimsNearlyAllThatIsTrueOfScatteredPoints) {
   constexpr int D = TypeParam::value;
   Points<D> points =
-      generate_points<D>({.family = Family::kUniform, .count = 2000, .dimension = D, .seed = 6});
+      generated_points<D>({.family = Family::kUniform, .count = 2000, .dimension = D, .seed = 6});
   for (const double offset : {0.0, 1e6}) {
     for (Point<D>& p : points) p[1] += offset;
     Box<D> box;
@@ -203,7 +203,7 @@ TYPED_TEST(KernelSafeBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThread
   constexpr int D = TypeParam::value;
   constexpr std::size_t kCount = D == 2 ? 50'000 : 15'001;  // simplices for several ranges
   Points<D> points =
-      generate_points<D>({.family = Family::kUniform, .count = kCount, .dimension = D, .seed = 8});
+      generated_points<D>({.family = Family::kUniform, .count = kCount, .dimension = D, .seed = 8});
   for (const std::size_t repeated : {0, 100}) {
     points.insert(points.end(), points.begin(), points.begin() + repeated);
     std::vector<VertexId> index(points.size());
@@ -267,7 +267,7 @@ TYPED_TEST(KernelSafeBox, ListsTheSameInPlaceAndApartWithOneAndWithSeveralThread
 TYPED_TEST(KernelSafeBox, SaysNothingUnasked) {
   constexpr int D = TypeParam::value;
   const Points<D> points =
-      generate_points<D>({.family = Family::kUniform, .count = 50, .dimension = D, .seed = 7});
+      generated_points<D>({.family = Family::kUniform, .count = 50, .dimension = D, .seed = 7});
   std::vector<VertexId> index(points.size());
   std::iota(index.begin(), index.end(), VertexId{0});
   EXPECT_FALSE(
@@ -275,4 +275,4 @@ TYPED_TEST(KernelSafeBox, SaysNothingUnasked) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

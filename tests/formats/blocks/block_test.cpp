@@ -5,7 +5,7 @@
 #include "formats/bytes/bytes.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -29,7 +29,7 @@ Bytes runs(std::size_t count) {
 
 /// Decodes a block that must end with the bytes; returns its kind.
 std::uint32_t decode(const Bytes& block, Bytes& content) {
-  if (block.size() < kBlockHeadSize) throw Error("block: ends within the head");
+  if (block.size() < kBlockHeadSize) throw Failure("block: ends within the head");
   const BlockHead head =
       decode_block_head(std::span(block).first<kBlockHeadSize>(), {"a.spp", at_byte(8)});
   decode_block(head, std::span(block).subspan(kBlockHeadSize), content, {"a.spp", at_byte(8)});
@@ -103,4 +103,4 @@ TEST(Block, ASizeThatNoCompressionReachesIsNotAllocated) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -187,7 +187,7 @@ TEST(Columns, FlippedBitsNeverCrash) {
       try {
         values_of<double>(flipped, 4);
         values_of<std::uint32_t>(flipped, 4);
-      } catch (const Error& error) {
+      } catch (const Failure& error) {
         EXPECT_THAT(error.what(), StartsWith("a.spp, byte 8: "));
       }
     }
@@ -209,4 +209,4 @@ TEST(Columns, NumbersOutOfRange) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(Json, MembersKeepTheirOrder) {
@@ -49,10 +49,10 @@ TEST(Json, WrongTextIsToldWithItsPlace) {
     ADD_FAILURE() << "this is not JSON";
   } catch (const JsonError& error) {
     EXPECT_EQ(error.byte(), 7U);
-    EXPECT_THAT(error.what(), testing::HasSubstr("invalid literal"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("invalid literal"));
   }
   EXPECT_THROW(static_cast<void>(parse_json(std::string(100'000, '['))), JsonError);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

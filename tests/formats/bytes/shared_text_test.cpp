@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(SharedText, CopiesAreTheSameMemoryAndEqualTextsAreEqual) {
@@ -21,4 +21,4 @@ TEST(SharedText, IsEmptyAtFirst) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

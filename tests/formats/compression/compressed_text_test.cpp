@@ -15,7 +15,7 @@
 #include "formats/points/spp/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -102,7 +102,7 @@ TEST_P(CompressedText, FlippedBits) {
       if (extension_ != ".zst") {
         EXPECT_EQ(points, 2000U) << at;
       }
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       EXPECT_THAT(error.what(), HasSubstr(name_));
     }
   }
@@ -176,4 +176,4 @@ TEST(CompressedLz4, WithoutChecksumTruncationIsSeen) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "tests/faulty_file_system.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 FileDigest digest(const std::string& content) {
@@ -42,4 +42,4 @@ TEST(FileDigest, SeesOtherContentsBetween) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ TEST_F(KeptScratch, OfWhichBytesAreMissingIsRefused) {
   const auto error_of = [&](const std::string& name, std::uint64_t size) -> std::string {
     try {
       const auto reopened = folder.reopen(name, size);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "";
@@ -86,8 +86,8 @@ TEST_F(KeptScratch, KeepsToItsCapAcrossProcesses) {
   }
   KeptScratchFolder folder(path(), 100);
   const auto file = folder.reopen("tile-1", 80);
-  EXPECT_THROW(file->append(bytes(30)), Error);
+  EXPECT_THROW(file->append(bytes(30)), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -15,7 +15,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,7 +82,7 @@ TEST_F(Scratch, AFileThatIsNotNeededAnyMoreServesAnew) {
   EXPECT_EQ(again->size(), 0U);
   again->append(as_bytes_of("again"));
   EXPECT_EQ(content(*again, 0, 5), "again");
-  EXPECT_THROW(content(*again, 5, 1), Error);
+  EXPECT_THROW(content(*again, 5, 1), Failure);
   EXPECT_EQ(scratch->peak_bytes(), 10U);
   EXPECT_NE(scratch->create("tile")->name(), name) << "it is in use";
 }
@@ -115,7 +115,7 @@ TEST_F(Scratch, AFileOfWhichAWriteFailedHalfwayServesAnew) {
   first->append(as_bytes_of("12345"));
   {
     const ShortFiles limit(8);
-    EXPECT_THROW(first->append(as_bytes_of("67890")), Error);
+    EXPECT_THROW(first->append(as_bytes_of("67890")), Failure);
   }
   EXPECT_EQ(fs::file_size(name), 8U);
   first.reset();
@@ -266,4 +266,4 @@ TEST_F(Scratch, TheDefaultParentIsTheEnvironmentS) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

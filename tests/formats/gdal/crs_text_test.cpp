@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 TEST(CrsText, WktIsAWordWithBracketsThatAreAllClosed) {
@@ -35,4 +35,4 @@ TEST(CrsText, CompoundWktHasHeights) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

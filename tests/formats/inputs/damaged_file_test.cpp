@@ -18,7 +18,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -55,7 +55,7 @@ std::string without_end(std::string bytes, std::size_t missing = 5) {
 
 /// Expects what `read` throws to tell of the damage.
 void expect_told(const Damage& damage, std::size_t size, const std::function<void()>& read) {
-  const std::optional<spillway::Error> error = thrown_by(read);
+  const std::optional<Error> error = thrown_by(read);
   ASSERT_TRUE(error);
   const FilePlace place = damage.place(size);
   EXPECT_EQ(error->code(), ErrorCode::kBadInput) << error->what();
@@ -201,4 +201,4 @@ TEST(DamagedMeshFormats, AreAllThatThereAre) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -17,7 +17,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -61,7 +61,7 @@ class EndlessFiles : public FileSystem {
     return std::make_unique<EndlessFile>(begin_, again_);
   }
   std::unique_ptr<OutputFile> create(const std::string& path) override {
-    throw Error("cannot create " + path);
+    throw Failure("cannot create " + path);
   }
   [[nodiscard]] bool exists(const std::string& /*path*/) const override { return false; }
 
@@ -87,7 +87,7 @@ void read_points(FileSystem& files, const std::string& format) {
 
 void read_stream(FileSystem& files, const std::string& format) {
   const auto reader = open_mesh_stream_reader(files, "-", format);
-  for (MeshBlock block; reader->read(block);) {
+  for (MeshStreamBlock block; reader->read(block);) {
   }
 }
 
@@ -95,11 +95,11 @@ TEST(EndlessInput, Points) {
   for (const std::string& text : nonsense()) {
     for (const char* format : {"text", "las", "npy", "spp", ""}) {
       EndlessFiles files("", text);
-      EXPECT_THROW(read_points(files, format), Error) << format << " of " << text;
+      EXPECT_THROW(read_points(files, format), Failure) << format << " of " << text;
     }
     if (text == "1") continue;
     EndlessFiles files("x y z\n1 2 3\n", text);
-    EXPECT_THROW(read_points(files, "text"), Error) << text;
+    EXPECT_THROW(read_points(files, "text"), Failure) << text;
   }
 }
 
@@ -108,7 +108,7 @@ TEST(EndlessInput, Meshes) {
     for (const char* format :
          {"ply", "obj", "off", "vtu", "spm", "sma", "glb", "stl", "landxml", "gpkg", "shp", ""}) {
       EndlessFiles files("", text);
-      EXPECT_THROW(read_mesh(files, "-", format), Error) << format << " of " << text;
+      EXPECT_THROW(read_mesh(files, "-", format), Failure) << format << " of " << text;
     }
   }
 }
@@ -117,7 +117,7 @@ TEST(EndlessInput, MeshStreams) {
   for (const std::string& text : nonsense()) {
     for (const char* format : {"spm", "sma", ""}) {
       EndlessFiles files("", text);
-      EXPECT_THROW(read_stream(files, format), Error) << format << " of " << text;
+      EXPECT_THROW(read_stream(files, format), Failure) << format << " of " << text;
     }
   }
 }
@@ -146,7 +146,7 @@ TEST(EndlessInput, MeshesThatBeginWell) {
   for (const std::string& text : nonsense()) {
     for (const auto& [format, begin] : begun) {
       EndlessFiles files(begin, text);
-      EXPECT_THROW(read_mesh(files, "-", format), Error) << format << " goes on with " << text;
+      EXPECT_THROW(read_mesh(files, "-", format), Failure) << format << " goes on with " << text;
     }
   }
 }
@@ -156,7 +156,7 @@ TEST(EndlessInput, XmlSaysWhatIsWrong) {
     EndlessFiles files("<LandXML>\n", again);
     try {
       read_mesh(files, "-", "landxml");
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "";
@@ -167,4 +167,4 @@ TEST(EndlessInput, XmlSaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "formats/points/create_points.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,7 +21,7 @@ class WrittenFiles {
  public:
   WrittenFiles() {
     std::string path = (fs::temp_directory_path() / "first_bytes_XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr) throw Error("no temporary folder");
+    if (::mkdtemp(path.data()) == nullptr) throw Failure("no temporary folder");
     folder_ = path;
     for (const MeshFormat* const format : mesh_formats()) write(*format);
     for (const PointFormat* const format : point_formats()) {
@@ -49,7 +49,7 @@ class WrittenFiles {
     const std::string path = folder_ / ("points." + std::string(format.extensions.front()));
     PointWriterOptions options;
     options.count = 2;
-    options.lattice = Lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
+    options.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
     const auto writer = open_point_writer(disk(), path, options);
     writer->write(std::vector<LatticePoint>{{1, 2, 3}, {4, 5, 6}}, {});
     writer->finish();
@@ -94,4 +94,4 @@ TEST(FirstBytes, AreWrittenByEveryFormat) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -16,51 +16,52 @@
 #include "src/error.h"
 #include "tests/faulty_file_system.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-InputKind kind_of(const std::string& path, const std::string& content) {
+ContentKind kind_of(const std::string& path, const std::string& content) {
   FaultyFileSystem files;
   files.files[path] = content;
   ProbedInput input(files, path);
-  return kind_of_input(input);
+  return kind_of_content(input);
 }
 
 const std::string kSpm = std::string(kSpmMagic) + '\0' + "and so on";
 
 TEST(InputKindTest, NamesTellMeshStreams) {
-  EXPECT_EQ(kind_of("a.spm", "1 2 3\n"), InputKind::kMeshStream);
-  EXPECT_EQ(kind_of("A.SMA", "1 2 3\n"), InputKind::kMeshStream);
+  EXPECT_EQ(kind_of("a.spm", "1 2 3\n"), ContentKind::kMeshStream);
+  EXPECT_EQ(kind_of("A.SMA", "1 2 3\n"), ContentKind::kMeshStream);
 }
 
 TEST(InputKindTest, FirstBytesTellMeshStreamsInFilesAndPipes) {
   for (const std::string path : {"-", "noname"}) {
-    EXPECT_EQ(kind_of(path, kSpm), InputKind::kMeshStream);
-    EXPECT_EQ(kind_of(path, "v 1 2 3\nv 2 3 4\n"), InputKind::kMeshStream);
-    EXPECT_EQ(kind_of(path, "# a comment\r\n#\n\nv 1 2 3\n"), InputKind::kMeshStream);
-    EXPECT_EQ(kind_of(path, "1 2 3\n"), InputKind::kPoints);
-    EXPECT_EQ(kind_of(path, "# 1 2 3\n1 2 3\n"), InputKind::kPoints);
-    EXPECT_EQ(kind_of(path, "# only a comment"), InputKind::kPoints);
-    EXPECT_EQ(kind_of(path, "LASF"), InputKind::kPoints);
-    EXPECT_EQ(kind_of(path, ""), InputKind::kPoints);
+    EXPECT_EQ(kind_of(path, kSpm), ContentKind::kMeshStream);
+    EXPECT_EQ(kind_of(path, "v 1 2 3\nv 2 3 4\n"), ContentKind::kMeshStream);
+    EXPECT_EQ(kind_of(path, "# a comment\r\n#\n\nv 1 2 3\n"), ContentKind::kMeshStream);
+    EXPECT_EQ(kind_of(path, "1 2 3\n"), ContentKind::kPoints);
+    EXPECT_EQ(kind_of(path, "# 1 2 3\n1 2 3\n"), ContentKind::kPoints);
+    EXPECT_EQ(kind_of(path, "# only a comment"), ContentKind::kPoints);
+    EXPECT_EQ(kind_of(path, "LASF"), ContentKind::kPoints);
+    EXPECT_EQ(kind_of(path, ""), ContentKind::kPoints);
   }
 }
 
 TEST(InputKindTest, OtherMeshesAreToldFromStreams) {
-  EXPECT_EQ(kind_of("mesh.obj", "v 1 2 3\n"), InputKind::kMesh);
-  EXPECT_EQ(kind_of("noname", "OFF\n0 0 0\n"), InputKind::kMesh);
-  EXPECT_EQ(kind_of("noname", "# spillway dimension 2\nv 1 2 3\n"), InputKind::kMesh);
-  EXPECT_EQ(kind_of("noname", std::string(kSmaNote) + "\nv 1 2 3\n"), InputKind::kMeshStream);
+  EXPECT_EQ(kind_of("mesh.obj", "v 1 2 3\n"), ContentKind::kMesh);
+  EXPECT_EQ(kind_of("noname", "OFF\n0 0 0\n"), ContentKind::kMesh);
+  EXPECT_EQ(kind_of("noname", "# spillway dimension 2\nv 1 2 3\n"), ContentKind::kMesh);
+  EXPECT_EQ(kind_of("noname", std::string(kSmaNote) + "\nv 1 2 3\n"), ContentKind::kMeshStream);
 }
 
 TEST(InputKindTest, FirstBytesGoBeforeNames) {
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 0\nelement face 1\nend_header\n";
   for (const std::string name : {"a.ply", "a.spm", "a.sma", "a.obj", "a.txt", "a.las"}) {
-    EXPECT_EQ(kind_of(name, "LASF and so on"), InputKind::kPoints) << name;
-    EXPECT_EQ(kind_of(name, "\x1f\x8b and so on"), InputKind::kPoints) << name;
-    EXPECT_EQ(kind_of(name, kSpm), InputKind::kMeshStream) << name;
-    EXPECT_EQ(kind_of(name, ply), InputKind::kMesh) << name;
-    EXPECT_EQ(kind_of(name, std::string(kSmaNote) + "\nv 1 2 3\n"), InputKind::kMeshStream) << name;
+    EXPECT_EQ(kind_of(name, "LASF and so on"), ContentKind::kPoints) << name;
+    EXPECT_EQ(kind_of(name, "\x1f\x8b and so on"), ContentKind::kPoints) << name;
+    EXPECT_EQ(kind_of(name, kSpm), ContentKind::kMeshStream) << name;
+    EXPECT_EQ(kind_of(name, ply), ContentKind::kMesh) << name;
+    EXPECT_EQ(kind_of(name, std::string(kSmaNote) + "\nv 1 2 3\n"), ContentKind::kMeshStream)
+        << name;
   }
 }
 
@@ -71,7 +72,7 @@ TEST(InputKindTest, PointsNamedAsAMeshAreNoMesh) {
   try {
     read_mesh(files, "a.ply");
     ADD_FAILURE() << "no Error was thrown";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("a.ply: this begins as points in LAS"));
   }
 }
@@ -81,8 +82,8 @@ TEST(InputKindTest, LookingLosesNothing) {
   files.seekable = false;
   files.files["-"] = "1 2 3\n4 5 6\n";
   ProbedInput input(files, "-");
-  EXPECT_EQ(kind_of_input(input), InputKind::kPoints);
-  EXPECT_EQ(kind_of_input(input), InputKind::kPoints);
+  EXPECT_EQ(kind_of_content(input), ContentKind::kPoints);
+  EXPECT_EQ(kind_of_content(input), ContentKind::kPoints);
   std::vector<std::byte> bytes(100);
   const auto opened = input.open("-");
   bytes.resize(opened->read(bytes));
@@ -120,7 +121,7 @@ TEST(InputKindTest, PointsOfFormatsThatAreNotReadAreNamed) {
       try {
         open_point_reader(files, name, {});
         ADD_FAILURE() << what;
-      } catch (const Error& error) {
+      } catch (const Failure& error) {
         EXPECT_THAT(error.what(),
                     ::testing::HasSubstr(what + ", which is not read; convert it to"));
       }
@@ -131,8 +132,8 @@ TEST(InputKindTest, PointsOfFormatsThatAreNotReadAreNamed) {
 TEST(InputKindTest, AMissingFileIsAnError) {
   FaultyFileSystem files;
   ProbedInput input(files, "missing");
-  EXPECT_THROW(kind_of_input(input), Error);
+  EXPECT_THROW(kind_of_content(input), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

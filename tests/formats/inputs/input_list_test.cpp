@@ -9,7 +9,7 @@
 #include "src/error.h"
 #include "tests/formats/inputs/temporary_files.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -30,14 +30,14 @@ class InputListTest : public ::testing::Test {
 
   static std::string error_of(const std::string& argument) {
     try {
-      expand_inputs({argument});
-    } catch (const Error& error) {
+      expand_paths({argument});
+    } catch (const Failure& error) {
       return error.what();
     }
     return "no error";
   }
 
-  testing::TemporaryFiles files_;
+  test::TemporaryFiles files_;
   std::string b_;
   std::string a_;
   std::string notes_;
@@ -47,15 +47,15 @@ class InputListTest : public ::testing::Test {
 };
 
 TEST_F(InputListTest, NamesStandForThemselves) {
-  EXPECT_THAT(expand_inputs({"-", b_, "not/there.las", a_}),
+  EXPECT_THAT(expand_paths({"-", b_, "not/there.las", a_}),
               ElementsAre("-", b_, "not/there.las", a_));
-  EXPECT_FALSE(stands_for_several("-"));
-  EXPECT_FALSE(stands_for_several(b_));
+  EXPECT_FALSE(names_several("-"));
+  EXPECT_FALSE(names_several(b_));
 }
 
 TEST_F(InputListTest, AFolderStandsForItsPointFilesSorted) {
-  EXPECT_THAT(expand_inputs({folder_}), ElementsAre(a_, b_));
-  EXPECT_TRUE(stands_for_several(folder_));
+  EXPECT_THAT(expand_paths({folder_}), ElementsAre(a_, b_));
+  EXPECT_TRUE(names_several(folder_));
   EXPECT_THAT(error_of(files_.path("")), HasSubstr("the folder has no point files"));
 }
 
@@ -64,7 +64,7 @@ TEST_F(InputListTest, AFolderStandsForFilesOfOneKindAndOthersAreSaid) {
   const auto names_in = [&](const std::string& folder) {
     said.clear();
     std::string names;
-    for (const std::string& file : expand_inputs({files_.path(folder)}, [&](std::string_view text) {
+    for (const std::string& file : expand_paths({files_.path(folder)}, [&](std::string_view text) {
            said += std::string(text) + "\n";
          })) {
       names += (names.empty() ? "" : " ") + std::filesystem::path(file).filename().string();
@@ -98,21 +98,21 @@ TEST_F(InputListTest, AFolderStandsForFilesOfOneKindAndOthersAreSaid) {
 }
 
 TEST_F(InputListTest, APatternStandsForWhatItMatchesSorted) {
-  EXPECT_THAT(expand_inputs({folder_ + "/?.la[sz]"}), ElementsAre(a_, b_));
-  EXPECT_TRUE(stands_for_several(folder_ + "/*.las"));
+  EXPECT_THAT(expand_paths({folder_ + "/?.la[sz]"}), ElementsAre(a_, b_));
+  EXPECT_TRUE(names_several(folder_ + "/*.las"));
   EXPECT_THAT(error_of(folder_ + "/*.spp"), HasSubstr("no file matches this pattern"));
 }
 
 TEST_F(InputListTest, APatternThatIsTheNameOfAFileIsThatFile) {
   const std::string odd = files_.put("clouds/[a].las", "");
-  EXPECT_THAT(expand_inputs({odd}), ElementsAre(odd));
+  EXPECT_THAT(expand_paths({odd}), ElementsAre(odd));
 }
 
 TEST_F(InputListTest, AListNamesFilesRelativeToItsFolder) {
   const std::string list =
       files_.put("clouds/list.txt", "# both\n\n  b.las \r\n*.laz\nbelow\n" + b_ + "\n");
-  EXPECT_THAT(expand_inputs({list_in(list)}), ElementsAre(b_, a_, deep_, b_));
-  EXPECT_TRUE(stands_for_several(list_in(list)));
+  EXPECT_THAT(expand_paths({list_in(list)}), ElementsAre(b_, a_, deep_, b_));
+  EXPECT_TRUE(names_several(list_in(list)));
 }
 
 TEST_F(InputListTest, AListWithoutNamesOrWithAnotherListIsRefused) {
@@ -127,10 +127,10 @@ TEST_F(InputListTest, FilesOfMeshesInFoldersAreLeftOutAndSaid) {
   static_cast<void>(files_.put("clouds/tin_vertices.npy", ""));
   static_cast<void>(files_.put("clouds/tin_simplices.npy", ""));
   std::string said;
-  const auto files = expand_inputs({folder_}, [&](std::string_view text) { said += text; });
+  const auto files = expand_paths({folder_}, [&](std::string_view text) { said += text; });
   EXPECT_THAT(files, ElementsAre(a_, b_));
   EXPECT_THAT(said, HasSubstr("2 files of npy meshes in folders left out"));
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A folder of its own, which goes when the test ends.
 class TemporaryFiles {
@@ -39,4 +39,4 @@ class TemporaryFiles {
   std::filesystem::path folder_;
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "formats/bytes/number_type.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// One attribute of each type, "of_uint8" and so on, and an array.
 inline AttributeLayout every_type() {
@@ -70,7 +70,7 @@ inline void add_attributes(Mesh& mesh, const AttributeLayout& layout, unsigned s
 inline void add_attributes(StreamedMesh& mesh, const AttributeLayout& layout, unsigned seed,
                            std::uint64_t most = std::uint64_t{1} << 52) {
   mesh.header.attributes = layout;
-  for (MeshBlock& block : mesh.blocks) {
+  for (MeshStreamBlock& block : mesh.blocks) {
     block.attributes = random_records(layout, block.vertices.size(), seed++, most);
   }
 }
@@ -99,4 +99,4 @@ inline std::vector<double> meant_by(const Mesh& mesh, const std::string& name) {
   return numbers;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

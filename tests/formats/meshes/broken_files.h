@@ -6,9 +6,9 @@
 
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
-/// Whatever is done to a file, reading it ends with a mesh or an Error.
+/// Whatever is done to a file, reading it ends with a mesh or an Failure.
 inline void expect_mesh_or_error(FaultyFileSystem& files, const std::string& path) {
   try {
     is_mesh(files, path);
@@ -16,7 +16,7 @@ inline void expect_mesh_or_error(FaultyFileSystem& files, const std::string& pat
     ASSERT_EQ(mesh.header.vertices, mesh.vertices.size());
     ASSERT_EQ(mesh.corners.size(), mesh.header.simplices * mesh.corners_per_simplex());
     for (const std::uint64_t corner : mesh.corners) ASSERT_LT(corner, mesh.vertices.size());
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
   }
 }
@@ -41,4 +41,4 @@ inline void break_everywhere(FaultyFileSystem& files, const std::string& broken,
   files.files[broken] = good;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

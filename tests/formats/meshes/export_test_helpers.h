@@ -11,7 +11,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A grid of triangles over one square kilometre of UTM, every vertex used.
 inline StreamedMesh kilometre(const std::string& crs) {
@@ -20,7 +20,7 @@ inline StreamedMesh kilometre(const std::string& crs) {
   mesh.header.crs = crs;
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> jitter(0, 10);
-  MeshBlock& block = mesh.blocks.emplace_back();
+  MeshStreamBlock& block = mesh.blocks.emplace_back();
   for (std::size_t i = 0; i < kSide * kSide; ++i) {
     block.vertices.push_back(
         {547000.123456789 + 1000.0 / kSide * double(i % kSide) + jitter(random),
@@ -70,7 +70,7 @@ inline Triangle turned(Triangle triangle) {
 inline std::vector<Triangle> triangles_of(const StreamedMesh& mesh) {
   std::vector<WorldPoint> vertices;
   std::vector<Triangle> result;
-  for (const MeshBlock& block : mesh.blocks) {
+  for (const MeshStreamBlock& block : mesh.blocks) {
     const StreamNumbers numbers(vertices.size(), block);
     for (const LatticePoint& vertex : block.vertices) {
       vertices.push_back(in_world(mesh.header.lattice, vertex));
@@ -116,4 +116,4 @@ inline void expect_near(const std::vector<Triangle>& a, const std::vector<Triang
   EXPECT_LE(worst, tolerance);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

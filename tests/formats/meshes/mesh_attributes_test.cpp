@@ -16,7 +16,7 @@
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -480,4 +480,4 @@ TEST(PlyAttributes, AreInRecordsOfRanksAsInAFileOfOneProcess) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

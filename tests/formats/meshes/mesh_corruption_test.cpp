@@ -11,7 +11,7 @@
 #include "tests/formats/meshes/broken_files.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -299,7 +299,7 @@ TEST(VtuCorruption, BadHeader) {
 
 TEST(VtuCorruption, BadFieldData) {
   Mesh mesh = square();
-  mesh.header.lattice = Lattice{{1, 1, 1}, {10, 20, 30}};
+  mesh.header.lattice = IntegerLattice{{1, 1, 1}, {10, 20, 30}};
   const std::string good = mesh_bytes(kVtuMesh, mesh);
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20"), HasSubstr("six numbers"));
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20 x"), HasSubstr("not a number"));
@@ -460,7 +460,7 @@ TEST(NpyMeshCorruption, FlatVerticesOfTetrahedra) {
   EXPECT_THAT(npy.error(), HasSubstr("2 coordinates"));
 }
 
-// Whatever is done to a file, reading it ends with a mesh or an Error.
+// Whatever is done to a file, reading it ends with a mesh or an Failure.
 
 class BrokenEverywhere : public ::testing::TestWithParam<std::pair<const MeshFormat*, int>> {};
 
@@ -489,4 +489,4 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenEverywhere,
                          });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -15,7 +15,7 @@
 #include "tests/formats/meshes/export_test_helpers.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -387,7 +387,7 @@ TEST(ExportFormats, NoFlippedByteCrashesAReader) {
         try {
           const Mesh mesh = read_bytes(path, bad);
           for (const std::uint64_t corner : mesh.corners) ASSERT_LT(corner, mesh.vertices.size());
-        } catch (const Error& error) {
+        } catch (const Failure& error) {
           ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
         }
       }
@@ -436,7 +436,7 @@ TEST(ExportFormats, LargestOriginFitsTheHeaderOfStl) {
 
 TEST(ExportFormats, TooLargeForGltfIsRefusedAtOnce) {
   FaultyFileSystem files;
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = 200'000'000;
   header.simplices = 400'000'000;
   EXPECT_THAT(error_of([&] { open_mesh_writer(files, "a.glb", kGlbMesh, header); }),
@@ -447,4 +447,4 @@ TEST(ExportFormats, TooLargeForGltfIsRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

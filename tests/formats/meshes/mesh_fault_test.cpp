@@ -9,7 +9,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFaults,
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -19,7 +19,7 @@
 #include "formats/meshes/spm/spm_format.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -109,7 +109,7 @@ TEST(MeshFormatTable, ListsForMessagesBeginWithSpillwaysOwn) {
 
 class ToyWriter : public CheckedMeshWriter {
  public:
-  ToyWriter(std::unique_ptr<OutputFile> file, const MeshHeader& header)
+  ToyWriter(std::unique_ptr<OutputFile> file, const MeshFileHeader& header)
       : CheckedMeshWriter(header, file->name()), file_(std::move(file)) {
     put(fmt::format("TOY {} {}\n", header.vertices, header.simplices));
   }
@@ -149,7 +149,8 @@ constinit const MeshFormat kToyMesh = {
     .extensions = kToyExtensions,
     .recognises = [](std::string_view text) { return text.starts_with("TOY "); },
     .read = read_toy,
-    .open_writer = [](MeshFiles files, const MeshHeader& header) -> std::unique_ptr<MeshWriter> {
+    .open_writer = [](MeshFiles files,
+                      const MeshFileHeader& header) -> std::unique_ptr<MeshWriter> {
       return std::make_unique<ToyWriter>(std::move(files.main), header);
     },
 };
@@ -174,7 +175,7 @@ TEST(AnotherMeshFormat, IsWrittenAsAWholeAndReadByItsFirstBytes) {
   EXPECT_EQ(read.vertices, mesh.vertices);
   EXPECT_EQ(read.corners, mesh.corners);
   ProbedInput input(files, "a.x");
-  EXPECT_EQ(kind_of_input(input, kTable), InputKind::kMesh);
+  EXPECT_EQ(kind_of_content(input, kTable), ContentKind::kMesh);
 }
 
 TEST(AnotherMeshFormat, TakesBlocks) {
@@ -195,4 +196,4 @@ TEST(AnotherMeshFormat, RefusesWhatItDoesNotHold) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -4,7 +4,7 @@
 
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -146,7 +146,7 @@ TEST(PlyReader, NotesInComments) {
                                   "comment spillway dimension 2\n"
                                   "comment spillway lattice 0.01 0.01 0.001 500000 4100000.5 -3\n"
                                   "comment crs PROJCS[\"a b\"]"));
-  EXPECT_EQ(mesh.header.lattice, (Lattice{{0.01, 0.01, 0.001}, {500000, 4100000.5, -3}}));
+  EXPECT_EQ(mesh.header.lattice, (IntegerLattice{{0.01, 0.01, 0.001}, {500000, 4100000.5, -3}}));
   EXPECT_EQ(mesh.header.crs, "PROJCS[\"a b\"]");
 }
 
@@ -204,7 +204,7 @@ std::string off_text() {
 TEST(OffReader, CommentsBlankLinesAndColours) {
   const Mesh mesh = read_both("a.off", off_text());
   expect_square(mesh);
-  EXPECT_EQ(mesh.header.lattice, (Lattice{{1, 1, 0.5}, {0, 0, 0}}));
+  EXPECT_EQ(mesh.header.lattice, (IntegerLattice{{1, 1, 0.5}, {0, 0, 0}}));
 }
 
 TEST(OffReader, CountsOnTheFirstLine) {
@@ -294,4 +294,4 @@ TEST(MeshReader, MissingFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

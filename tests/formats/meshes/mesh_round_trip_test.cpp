@@ -9,7 +9,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Bool;
@@ -121,7 +121,7 @@ TEST_P(EveryFormat, TakesExtensionsAndNames) {
 
 TEST_P(EveryFormat, RefusesTetrahedraOrHoldsThem) {
   FaultyFileSystem files;
-  MeshHeader header;
+  MeshFileHeader header;
   header.dimension = 3;
   if (GetParam().triangles_only) {
     EXPECT_THAT(
@@ -135,7 +135,7 @@ TEST_P(EveryFormat, RefusesTetrahedraOrHoldsThem) {
 
 TEST_P(EveryFormat, RefusesInputIndicesOrHoldsThem) {
   FaultyFileSystem files;
-  MeshHeader header;
+  MeshFileHeader header;
   header.has_input_index = true;
   if (GetParam().triangles_only) {
     EXPECT_THAT(
@@ -166,7 +166,7 @@ TEST_P(EveryFormat, RefusesCountsThatAreNotThePromisedOnes) {
     mesh.header.simplices += change;
     error_of([&] { write_mesh(files, GetParam().path, *GetParam().format, mesh); });
   }
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = 3;
   const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
   EXPECT_THAT(error_of([&] { writer->finish(); }), HasSubstr("3 vertices and 0 simplices"));
@@ -175,7 +175,7 @@ TEST_P(EveryFormat, RefusesCountsThatAreNotThePromisedOnes) {
 
 TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
   FaultyFileSystem files;
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = 2;
   const auto writer = open_mesh_writer(files, GetParam().path, *GetParam().format, header);
   const std::vector<WorldPoint> vertices(2);
@@ -185,7 +185,7 @@ TEST_P(EveryFormat, RefusesInputIndicesThatAreNotOneAVertex) {
 
 TEST_P(EveryFormat, NothingAppearsBeforeFinish) {
   FaultyFileSystem files;
-  open_mesh_writer(files, GetParam().path, *GetParam().format, MeshHeader{}).reset();
+  open_mesh_writer(files, GetParam().path, *GetParam().format, MeshFileHeader{}).reset();
   EXPECT_TRUE(files.files.empty());
   EXPECT_TRUE(files.parts.empty());
 }
@@ -240,7 +240,7 @@ TEST(MeshFormats, AFormatCanBeNamed) {
 
 TEST(NpyMesh, IsNotWrittenToAPipe) {
   FaultyFileSystem files;
-  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "-", kNpyMesh, MeshHeader{}); }),
+  EXPECT_THAT(error_of([&] { open_mesh_writer(files, "-", kNpyMesh, MeshFileHeader{}); }),
               HasSubstr("two files"));
 }
 
@@ -279,7 +279,7 @@ TEST(Ply, RefusesAnInputIndexThatIsNoDouble) {
 
 TEST(Ply, RefusesMoreVerticesThanItCanNumber) {
   FaultyFileSystem files;
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = (std::uint64_t{1} << 32) + 1;
   EXPECT_THAT(error_of([&] { open_mesh_writer(files, "mesh.ply", kPlyMesh, header); }),
               HasSubstr("at most 4294967296 vertices"));
@@ -299,4 +299,4 @@ TEST(Notes, ALongCoordinateSystemIsCutIntoLinesAndComesBackWhole) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -17,14 +17,14 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// For the parameters of tests.
 inline void PrintTo(const MeshFormat* format, std::ostream* out) { *out << format->name; }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A few simplices of doubles that need 17 digits, at offsets as large as UTM's, signed zeros and
 /// subnormals among them.
@@ -50,7 +50,7 @@ inline void add_input_index(Mesh& mesh) {
   if (!mesh.input_index.empty()) mesh.input_index.back() = (std::uint64_t{1} << 53) - 1;
 }
 
-inline Lattice awkward_lattice() {
+inline IntegerLattice awkward_lattice() {
   return {{0.01, 0.010000000000000002, 0.001}, {500000.5, -4649776.123456789, 1e-7}};
 }
 
@@ -98,7 +98,7 @@ inline Mesh read_bytes(const std::string& path, const std::string& bytes, bool s
 }
 
 /// The message that reading these bytes ends with; it names the file. A pipe, whose size is not
-/// known, must end with an Error, too.
+/// known, must end with an Failure, too.
 inline std::string error_of_bytes(const std::string& path, const std::string& bytes) {
   error_of([&] { read_bytes(path, bytes, false); });
   std::string message = error_of([&] { read_bytes(path, bytes); });
@@ -133,4 +133,4 @@ inline void expect_equal(const Mesh& a, const Mesh& b) {
   EXPECT_TRUE(a.attributes == b.attributes);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A unit square of two triangles, or a tetrahedron.
 inline Mesh small_mesh(int dimension) {
@@ -26,7 +26,7 @@ inline Mesh full_mesh(int dimension) {
   Mesh mesh = small_mesh(dimension);
   mesh.input_index = {30, 10, 20, 4294967295};
   mesh.header.has_input_index = true;
-  mesh.header.lattice = Lattice{{0.5, 0.5, 0.0005}, {500000, 4100000.25, -0.1}};
+  mesh.header.lattice = IntegerLattice{{0.5, 0.5, 0.0005}, {500000, 4100000.25, -0.1}};
   mesh.header.crs = "PROJCS[\"a\",\n  UNIT[\"m\",1]]";
   return mesh;
 }
@@ -44,4 +44,4 @@ inline std::string written(const MeshFormat& format, const Mesh& mesh, std::size
 inline constexpr const MeshFormat* kFullFormats[] = {&kPlyMesh, &kPlyAsciiMesh, &kVtuMesh,
                                                      &kNpyMesh};
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

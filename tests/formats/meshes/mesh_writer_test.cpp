@@ -17,7 +17,7 @@
 
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -141,7 +141,7 @@ TEST(PlyWriter, BinaryTetrahedraWithInputIndex) {
 TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
   const std::vector<WorldPoint> enough_to_be_written_out(1000000);
   for (const bool beyond : {false, true}) {
-    MeshHeader header;
+    MeshFileHeader header;
     header.vertices = (std::uint64_t{1} << 31) + (beyond ? 1 : 0);
     FaultyFileSystem files;
     const auto writer = open_mesh_writer(files, "a.ply", kPlyMesh, header);
@@ -153,7 +153,7 @@ TEST(PlyWriter, VertexNumbersBeyondIntAreUnsigned) {
 }
 
 TEST(PlyWriter, RefusesMoreVerticesThanItCanNumber) {
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = (std::uint64_t{1} << 32) + 1;
   for (const MeshFormat* const format : {&kPlyMesh, &kPlyAsciiMesh}) {
     FaultyFileSystem files;
@@ -339,7 +339,7 @@ TEST(MeshText, DoublesHaveTheFewestDigitsThatReadBackTheSame) {
                    {0.1 + 0.2, -0.0, 1e300},
                    {std::numeric_limits<double>::denorm_min(), 1e-5, 123456789.123456789},
                    {std::numeric_limits<double>::max(), 9007199254740993.0, 1e22}};
-  mesh.header.lattice = Lattice{{0.1, 1.0 / 3, 1e-7}, {500000, 1e22, 0.30000000000000004}};
+  mesh.header.lattice = IntegerLattice{{0.1, 1.0 / 3, 1e-7}, {500000, 1e22, 0.30000000000000004}};
   const std::string file = written(kObjMesh, mesh);
   EXPECT_THAT(file, HasSubstr("# spillway lattice 0.1 0.3333333333333333 1e-07 500000 1e+22 "
                               "0.30000000000000004\n"
@@ -482,4 +482,4 @@ TEST(MeshWriters, MissingInputIndicesAreTold) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "formats/meshes/ply/ply_records.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -126,7 +126,7 @@ TEST(PlyRecords, AreWhatTheWriterWrites) {
 }
 
 TEST(PlyRecords, EndWherePlyDoes) {
-  MeshHeader header;
+  MeshFileHeader header;
   header.vertices = (std::uint64_t{1} << 32) + 1;
   EXPECT_THAT(error_of([&] { ply_header_text(header, false, "a.ply"); }),
               HasSubstr("cannot write a.ply: PLY numbers at most 4294967296 vertices"));
@@ -137,4 +137,4 @@ TEST(PlyRecords, EndWherePlyDoes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 #include "formats/meshes/common/face_cutter.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -165,4 +165,4 @@ TEST(PolygonReader, FacesOfTooManyCornersAreRefusedBeforeTheirCornersAreRead) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

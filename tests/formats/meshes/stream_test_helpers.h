@@ -14,12 +14,12 @@
 #include "formats/meshes/mesh_stream_writer.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A mesh in blocks, and what its stream says of it.
 struct StreamedMesh {
   MeshStreamHeader header;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
   MeshTotals totals;
 };
 
@@ -28,11 +28,11 @@ struct StreamedMesh {
 inline StreamedMesh strip(int dimension, std::size_t steps, std::size_t size) {
   StreamedMesh mesh;
   mesh.header.dimension = dimension;
-  mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {500000, 4100000, -3.25}};
+  mesh.header.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {500000, 4100000, -3.25}};
   const std::size_t overlap = dimension;
   std::size_t simplices = 0;
   for (std::size_t begin = 0; begin < steps; begin += size) {
-    MeshBlock& block = mesh.blocks.emplace_back();
+    MeshStreamBlock& block = mesh.blocks.emplace_back();
     const std::size_t end = std::min(begin + size, steps);
     for (std::size_t i = begin; i < end; ++i) {
       const auto t = static_cast<double>(i);
@@ -64,7 +64,7 @@ inline StreamedMesh strip(int dimension, std::size_t steps, std::size_t size) {
 inline void add_input_index(StreamedMesh& mesh) {
   mesh.header.has_input_index = true;
   std::uint64_t next = 17;
-  for (MeshBlock& block : mesh.blocks) {
+  for (MeshStreamBlock& block : mesh.blocks) {
     for (std::size_t i = 0; i < block.vertices.size(); ++i) {
       block.input_index.push_back(next = next * 7 % 1000003);
     }
@@ -73,7 +73,7 @@ inline void add_input_index(StreamedMesh& mesh) {
 
 /// Takes the lattice away, so that any doubles may come.
 inline void leave_lattice(StreamedMesh& mesh) {
-  for (MeshBlock& block : mesh.blocks) {
+  for (MeshStreamBlock& block : mesh.blocks) {
     for (LatticePoint& vertex : block.vertices) {
       vertex = LatticePoint(in_world(mesh.header.lattice, vertex).numbers());
     }
@@ -82,7 +82,7 @@ inline void leave_lattice(StreamedMesh& mesh) {
 }
 
 inline void write_blocks(MeshStreamWriter& writer, const StreamedMesh& mesh, bool absorb = false) {
-  for (MeshBlock block : mesh.blocks) {
+  for (MeshStreamBlock block : mesh.blocks) {
     if (absorb) {
       const std::vector<std::uint64_t> imported = std::exchange(block.imported, {});
       writer.absorb(block);
@@ -115,7 +115,7 @@ inline StreamedMesh read_stream(const std::string& path, const std::string& byte
   const auto reader = open_mesh_stream_reader(files, path, format);
   StreamedMesh mesh;
   mesh.header = reader->header();
-  MeshBlock block;
+  MeshStreamBlock block;
   while (reader->read(block)) mesh.blocks.push_back(block);
   EXPECT_FALSE(reader->read(block));
   mesh.totals = reader->totals();
@@ -155,7 +155,7 @@ inline std::vector<std::uint64_t> turned(std::vector<std::uint64_t> simplex) {
 
 inline FlatMesh flat(const StreamedMesh& mesh) {
   FlatMesh all;
-  for (const MeshBlock& block : mesh.blocks) {
+  for (const MeshStreamBlock& block : mesh.blocks) {
     const StreamNumbers number(all.vertices.size(), block);
     all.vertices.insert(all.vertices.end(), block.vertices.begin(), block.vertices.end());
     all.input_index.insert(all.input_index.end(), block.input_index.begin(),
@@ -175,4 +175,4 @@ inline FlatMesh flat(const StreamedMesh& mesh) {
   return all;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

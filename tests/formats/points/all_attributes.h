@@ -7,7 +7,7 @@
 #include "formats/bytes/bytes.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Everything that a reader gives, with all attributes.
 struct Carried {
@@ -95,4 +95,4 @@ inline void expect_equal_pieces(const std::string& path, const std::string& cont
   EXPECT_TRUE(records == all.records);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kPoints = 2000;
@@ -74,4 +74,4 @@ TEST_P(LasAttributes, ComeBackFromPly) { expect_round_trip("a.ply", GetParam(), 
 INSTANTIATE_TEST_SUITE_P(EveryPointFormat, LasAttributes, ::testing::Range(0, 11));
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "formats/points/text/text_reader.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -121,4 +121,4 @@ TEST(InvalidRows, OfArraysAreCountedAndKeepTheirNumbers) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

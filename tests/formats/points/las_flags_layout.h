@@ -7,7 +7,7 @@
 #include "formats/points/attributes/record_conversion.h"
 #include "formats/points/las/records/las_flags.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A layout of what LAS says in few bytes, each flag as a number of its own.
 inline AttributeLayout flags_layout() {
@@ -39,4 +39,4 @@ inline std::vector<LasFlags> flags_of(std::span<const std::byte> records) {
   return flags;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,7 +18,7 @@ constexpr std::size_t kPoints = 200000;
 void write_points(FaultyFileSystem& files, const std::string& path) {
   PointWriterOptions options;
   options.count = kPoints;
-  options.lattice = Lattice{};
+  options.lattice = IntegerLattice{};
   const auto writer = open_point_writer(files, path, options);
   std::mt19937 random(1);
   std::vector<LatticePoint> points(kPoints);
@@ -88,7 +88,7 @@ TEST_P(PointFaults, AnUnfinishedFileIsDropped) {
   FaultyFileSystem files;
   PointWriterOptions options;
   options.count = kPoints;
-  options.lattice = Lattice{};
+  options.lattice = IntegerLattice{};
   open_point_writer(files, GetParam(), options).reset();
   EXPECT_TRUE(files.files.empty());
   EXPECT_TRUE(files.parts.empty());
@@ -117,7 +117,7 @@ TEST(ShrinkingFile, NpyEndsWithinAPoint) {
               HasSubstr("within point 150000 of 200000"));
 }
 
-/// Reads bytes that may be anything: points or an Error are right, anything else is a fault that
+/// Reads bytes that may be anything: points or an Failure are right, anything else is a fault that
 /// ends the test (a crash, another exception, a sanitizer's finding).
 void read_anything(const std::string& path, const std::string& bytes) {
   for (const bool seekable : {true, false}) {
@@ -126,7 +126,7 @@ void read_anything(const std::string& path, const std::string& bytes) {
     files.files[path] = bytes;
     try {
       read_all_points(files, path);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       EXPECT_THAT(error.what(), HasSubstr(path));
     }
   }
@@ -202,4 +202,4 @@ TEST(AnyCorruption, TextGivesPointsOrAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -122,7 +122,7 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
   FaultyFileSystem files;
   files.seekable = false;
   PointWriterOptions options;
-  options.lattice = Lattice{};
+  options.lattice = IntegerLattice{};
   for (const char* name : {"a.las", "a.laz", "a.copc.laz", "a.npy"}) {
     EXPECT_THAT(error_of([&] { open_point_writer(files, name, options); }),
                 HasSubstr("not known beforehand; write text or spp"));
@@ -137,4 +137,4 @@ TEST(PointFormatChoice, PipeThatNeedsTheCountBeforehand) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

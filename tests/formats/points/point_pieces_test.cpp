@@ -15,7 +15,7 @@
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 #include "tests/formats/shared_data.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -423,4 +423,4 @@ TEST(PointPieceErrors, FailingReadsAreReportedAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

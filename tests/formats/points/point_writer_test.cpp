@@ -12,14 +12,14 @@
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/random_attributes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
+constexpr IntegerLattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 
 /// What a writer makes of the points, written in two pieces, with attributes if there are any.
 std::string written_as_is(const std::string& path, const std::vector<LatticePoint>& points,
@@ -66,7 +66,7 @@ T field(const std::string& las, std::size_t at) {
   return value;
 }
 
-PointWriterOptions with_lattice(const Lattice& lattice) {
+PointWriterOptions with_lattice(const IntegerLattice& lattice) {
   PointWriterOptions options;
   options.lattice = lattice;
   return options;
@@ -418,7 +418,7 @@ TEST(TextWriter, DecimalsOfTheLattice) {
 }
 
 TEST(TextWriter, WorldCoordinatesWhereTheLatticeIsNotDecimal) {
-  const Lattice odd{{0.25, 1.0 / 3, 0.01}, {0, 0, 0.005}};
+  const IntegerLattice odd{{0.25, 1.0 / 3, 0.01}, {0, 0, 0.005}};
   EXPECT_EQ(written("a.xyz", {{3, 1, 1}}, with_lattice(odd)), "0.75 0.3333333333333333 0.015\n");
 }
 
@@ -464,4 +464,4 @@ TEST(PointWriter, RefusesAnotherNumberOfPoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 
 #include "formats/points/las/records/las_flags.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// Whatever the fields of LAS 1.4, or of 1.2, can hold.
 inline std::vector<LasFlags> random_attributes(std::size_t count, bool version14, unsigned seed) {
@@ -22,4 +22,4 @@ inline std::vector<LasFlags> random_attributes(std::size_t count, bool version14
   return attributes;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "formats/state/state_writer.h"
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,7 +73,7 @@ class State : public ::testing::Test {
     try {
       Value value;
       read(value);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "";
@@ -140,10 +140,10 @@ TEST_F(State, IsRefusedByAnotherStageAndWithBytesLeft) {
   Whole whole;
   write(whole);
   StateReader other = reader();
-  EXPECT_THROW(other.section("part"), Error);
+  EXPECT_THROW(other.section("part"), Failure);
   StateReader early = reader();
   early.section("whole");
-  EXPECT_THROW(early.finish(), Error);
+  EXPECT_THROW(early.finish(), Failure);
 }
 
 TEST_F(State, FindsScratchFilesAgainAsTheyWere) {
@@ -182,4 +182,4 @@ TEST_F(State, FindsScratchFilesAgainAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

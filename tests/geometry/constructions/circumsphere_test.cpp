@@ -8,13 +8,13 @@
 #include "tests/geometry/exact_sphere.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::ExactSphere;
-using testing::Hard;
-using testing::Random;
-using testing::Rational;
+using test::ExactSphere;
+using test::Hard;
+using test::Random;
+using test::Rational;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -78,10 +78,10 @@ TYPED_TEST_SUITE(CertifiedBallTest, Dimensions);
 
 TYPED_TEST(CertifiedBallTest, BoundsHoldAgainstRationalArithmetic) {
   constexpr int D = TypeParam::value;
-  for (const Hard family : testing::kAllHard) {
-    SCOPED_TRACE(testing::name_of(family));
-    for (const auto& group : testing::hard_groups<D>(family, 200, 21)) {
-      const auto simplex = testing::simplex_of<D>(group);
+  for (const Hard family : test::kAllHard) {
+    SCOPED_TRACE(test::name_of(family));
+    for (const auto& group : test::hard_groups<D>(family, 200, 21)) {
+      const auto simplex = test::simplex_of<D>(group);
       const CertifiedBall<D> ball = certified_ball<D>(simplex);
       if (ball.error < kInfinity) expect_true_bounds<D>(simplex, ball);
     }
@@ -92,9 +92,9 @@ TYPED_TEST(CertifiedBallTest, BoundsOfManyAtOnceHoldAgainstRationalArithmetic) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t kSize = SimplexBatch<D>::kSize;
   std::size_t proofs = 0;
-  for (const Hard family : testing::kAllHard) {
-    SCOPED_TRACE(testing::name_of(family));
-    const auto groups = testing::hard_groups<D>(family, 4 * kSize, 22);
+  for (const Hard family : test::kAllHard) {
+    SCOPED_TRACE(test::name_of(family));
+    const auto groups = test::hard_groups<D>(family, 4 * kSize, 22);
     for (std::size_t begin = 0; begin < groups.size(); begin += kSize) {
       SimplexBatch<D> batch;
       for (std::size_t s = 0; s < kSize; ++s) {
@@ -105,7 +105,7 @@ TYPED_TEST(CertifiedBallTest, BoundsOfManyAtOnceHoldAgainstRationalArithmetic) {
       for (std::size_t s = 0; s < kSize; ++s) {
         if (balls.error[s] == kInfinity) continue;
         ++proofs;
-        expect_true_bounds<D>(testing::simplex_of<D>(groups[begin + s]), balls.at(s));
+        expect_true_bounds<D>(test::simplex_of<D>(groups[begin + s]), balls.at(s));
       }
     }
   }
@@ -118,9 +118,9 @@ TYPED_TEST(CertifiedBallTest, ManyAtOnceMeetTheBoxesThatTheyMeetOneByOne) {
   Random random(24);
   std::uint64_t all_met = 0;
   std::uint64_t all_missed = 0;
-  for (const Hard family : testing::kAllHard) {
-    SCOPED_TRACE(testing::name_of(family));
-    const auto groups = testing::hard_groups<D>(family, kSize, 25);
+  for (const Hard family : test::kAllHard) {
+    SCOPED_TRACE(test::name_of(family));
+    const auto groups = test::hard_groups<D>(family, kSize, 25);
     SimplexBatch<D> batch;
     for (std::size_t s = 0; s < kSize; ++s) {
       batch.set(s, [&](int i) { return groups[s][i]; });
@@ -169,10 +169,10 @@ TYPED_TEST(CertifiedBallTest, FalseIsAProofForTouchingBoxes) {
   constexpr int D = TypeParam::value;
   Random random(22);
   std::size_t proofs = 0;
-  for (const Hard family : testing::kAllHard) {
-    SCOPED_TRACE(testing::name_of(family));
-    for (const auto& group : testing::hard_groups<D>(family, 150, 23)) {
-      const auto simplex = testing::simplex_of<D>(group);
+  for (const Hard family : test::kAllHard) {
+    SCOPED_TRACE(test::name_of(family));
+    for (const auto& group : test::hard_groups<D>(family, 150, 23)) {
+      const auto simplex = test::simplex_of<D>(group);
       const CertifiedBall<D> ball = certified_ball<D>(simplex);
       if (ball.error == kInfinity) continue;
       const ExactSphere<D> exact(simplex);
@@ -189,8 +189,8 @@ TYPED_TEST(CertifiedBallTest, FalseIsAProofForTouchingBoxes) {
 
 TYPED_TEST(CertifiedBallTest, ItsOwnVerticesMayMeet) {
   constexpr int D = TypeParam::value;
-  for (const auto& group : testing::hard_groups<D>(Hard::kCospherical, 500, 24)) {
-    const auto simplex = testing::simplex_of<D>(group);
+  for (const auto& group : test::hard_groups<D>(Hard::kCospherical, 500, 24)) {
+    const auto simplex = test::simplex_of<D>(group);
     const CertifiedBall<D> ball = certified_ball<D>(simplex);
     for (const auto& vertex : simplex) EXPECT_TRUE(may_meet<D>(ball, box_of<D>(vertex, vertex)));
   }
@@ -278,10 +278,10 @@ TYPED_TEST(CertifiedBallTest, WellInsideIsProvedByRationalArithmetic) {
   constexpr int D = TypeParam::value;
   Random random(31);
   std::size_t proofs = 0;
-  for (const Hard family : testing::kAllHard) {
-    SCOPED_TRACE(testing::name_of(family));
-    for (const auto& group : testing::hard_groups<D>(family, 60, 32)) {
-      const auto simplex = testing::simplex_of<D>(group);
+  for (const Hard family : test::kAllHard) {
+    SCOPED_TRACE(test::name_of(family));
+    for (const auto& group : test::hard_groups<D>(family, 60, 32)) {
+      const auto simplex = test::simplex_of<D>(group);
       SimplexBatch<D> batch{};
       batch.set(7, [&](int i) { return simplex[i]; });
       for (const Box<D>& box : boxes_around<D>(certified_ball<D>(simplex), random)) {
@@ -338,4 +338,4 @@ TYPED_TEST(CertifiedBallTest, NothingIsKnownOfWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

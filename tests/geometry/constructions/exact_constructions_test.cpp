@@ -13,17 +13,17 @@
 #include "tests/geometry/exact_sphere.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::ExactSphere;
-using testing::Group;
-using testing::Hard;
-using testing::hard_groups;
-using testing::kAllHard;
-using testing::name_of;
-using testing::Rational;
-using testing::simplex_of;
+using test::ExactSphere;
+using test::Group;
+using test::Hard;
+using test::hard_groups;
+using test::kAllHard;
+using test::name_of;
+using test::Rational;
+using test::simplex_of;
 
 template <typename Dimension>
 class ConstructionsTest : public ::testing::Test {};
@@ -113,7 +113,7 @@ TYPED_TEST(ConstructionsTest, CircumcentreBeyondTheLargestDoubleIsInfinite) {
 
 TYPED_TEST(ConstructionsTest, BarycentricCoordinatesAreNearTheExactOnes) {
   constexpr int D = TypeParam::value;
-  testing::Random random(24);
+  test::Random random(24);
   for (const Hard family : kAllHard) {
     SCOPED_TRACE(name_of(family));
     for (const Group<D>& group : hard_groups<D>(family, kGroups, 25)) {
@@ -156,11 +156,11 @@ TYPED_TEST(ConstructionsTest, CoordinatesThatAreNotFiniteThrow) {
   constexpr int D = TypeParam::value;
   Point<D> bad{};
   bad[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(compare_distances<D>(bad, Point<D>{}, Point<D>{}), Error);
+  EXPECT_THROW(compare_distances<D>(bad, Point<D>{}, Point<D>{}), Failure);
   std::array<Point<D>, D + 1> simplex{};
   simplex[0] = bad;
-  EXPECT_THROW(circumcentre<D>(simplex), Error);
+  EXPECT_THROW(circumcentre<D>(simplex), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

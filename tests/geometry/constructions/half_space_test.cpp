@@ -8,11 +8,11 @@
 #include "src/geometry/predicates.h"
 #include "tests/geometry/point_families.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::Hard;
-using testing::Random;
+using test::Hard;
+using test::Random;
 
 template <typename Dimension>
 class HalfSpaceTest : public ::testing::Test {};
@@ -67,8 +67,8 @@ TYPED_TEST(HalfSpaceTest, MeetsABoxIfAnyOfItsPointsIsBeyond) {
   constexpr int D = TypeParam::value;
   Random random(27);
   int misses = 0;
-  for (const auto& group : testing::hard_groups<D>(Hard::kSmallLattice, 2000, 28)) {
-    auto simplex = testing::simplex_of<D>(group);
+  for (const auto& group : test::hard_groups<D>(Hard::kSmallLattice, 2000, 28)) {
+    auto simplex = test::simplex_of<D>(group);
     std::array<Point<D>, D> facet;
     std::copy_n(simplex.begin(), D, facet.begin());
     const Box<D> box = box_of<D>(group[D], group[D + 1]);
@@ -89,4 +89,4 @@ TYPED_TEST(HalfSpaceTest, MeetsABoxIfAnyOfItsPointsIsBeyond) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

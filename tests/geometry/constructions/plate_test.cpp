@@ -9,7 +9,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <typename Dimension>
@@ -140,4 +140,4 @@ TYPED_TEST(PlateTest, OfWhatOverflowsOrIsNotCertifiedIsAlwaysMet) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -15,22 +15,23 @@
 #include "tests/geometry/point_families.h"
 #include "tests/stream/checker/mesh_surgery.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::add_simplex;
+using test::add_simplex;
+using test::find_simplex;
+using test::flip;
+using test::Random;
+using test::remove_simplex;
 using ::testing::Contains;
-using testing::find_simplex;
-using testing::flip;
 using ::testing::HasSubstr;
-using testing::Random;
-using testing::remove_simplex;
 
-constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {637000.1, 4850000.03, -20}};
+constexpr IntegerLattice kCentimetres{{0.01, 0.01, 0.01}, {637000.1, 4850000.03, -20}};
 
 // A mesh of CGAL's simplices. With a lattice, points are integers.
 template <int D>
-Mesh cgal_mesh(const std::vector<Point<D>>& points, const std::optional<Lattice>& lattice = {}) {
+Mesh cgal_mesh(const std::vector<Point<D>>& points,
+               const std::optional<IntegerLattice>& lattice = {}) {
   Mesh mesh;
   mesh.header.dimension = D;
   mesh.header.vertices = points.size();
@@ -99,20 +100,20 @@ std::vector<Point<D>> plain() {
   return points;
 }
 
-CheckOptions any_delaunay() {
-  CheckOptions options;
+CheckerOptions any_delaunay() {
+  CheckerOptions options;
   options.any_delaunay = true;
   return options;
 }
 
-void expect_proved(const Mesh& mesh, const CheckOptions& options = {}) {
+void expect_proved(const Mesh& mesh, const CheckerOptions& options = {}) {
   const CheckReport report = check_mesh(mesh, options);
   EXPECT_EQ(report.fault_count, 0U);
   EXPECT_THAT(report.faults, ::testing::IsEmpty());
   EXPECT_EQ(report.canonical_hash, canonical_hash(mesh));
 }
 
-void expect_fault(const Mesh& mesh, const std::string& part, const CheckOptions& options = {}) {
+void expect_fault(const Mesh& mesh, const std::string& part, const CheckerOptions& options = {}) {
   const CheckReport report = check_mesh(mesh, options);
   EXPECT_GT(report.fault_count, 0U);
   EXPECT_THAT(report.faults, Contains(HasSubstr(part)));
@@ -165,7 +166,7 @@ TYPED_TEST(CheckerTest, AcceptsLatticesOnTheirIntegers) {
     expect_proved(mesh);
     EXPECT_TRUE(check_mesh(mesh, {}).on_lattice);
     mesh.header.lattice.reset();  // the input's lattice does as well
-    CheckOptions options;
+    CheckerOptions options;
     options.input_lattice = kCentimetres;
     expect_proved(mesh, options);
     EXPECT_TRUE(check_mesh(mesh, options).on_lattice);
@@ -174,7 +175,7 @@ TYPED_TEST(CheckerTest, AcceptsLatticesOnTheirIntegers) {
 
 TYPED_TEST(CheckerTest, TestsOutputCoordinatesIfTheLatticeIsNotIsotropic) {
   constexpr int D = TypeParam::value;
-  Lattice lattice{{0.25, 0.25, 0.25}, {10, 20, 30}};
+  IntegerLattice lattice{{0.25, 0.25, 0.25}, {10, 20, 30}};
   lattice.scale[D - 1] = 0.125;
   auto points = scattered_integers<D>(300, 1000, 6);
   Mesh mesh = cgal_mesh<D>(points, lattice);
@@ -246,7 +247,7 @@ TYPED_TEST(CheckerTest, RejectsADuplicateSimplexOnce) {
   constexpr int D = TypeParam::value;
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    const auto vertices = testing::simplex_of<D>(mesh, find_simplex<D>(mesh, inner));
+    const auto vertices = test::simplex_of<D>(mesh, find_simplex<D>(mesh, inner));
     mesh.corners.insert(mesh.corners.end(), vertices.begin(), vertices.end());
     expect_fault(mesh, "has the same vertices as " + this->simplex_);
   }
@@ -323,7 +324,7 @@ TYPED_TEST(CheckerTest, RejectsVertexNumbersOutOfRange) {
   Mesh mesh = this->good_;
   mesh.corners[5] = 200;
   expect_fault(mesh, "names vertex 200, but there are 200 vertices");
-  EXPECT_THROW(canonical_hash(mesh), Error);
+  EXPECT_THROW(canonical_hash(mesh), Failure);
 }
 
 TYPED_TEST(CheckerTest, RejectsCoordinatesThatAreNotFinite) {
@@ -344,7 +345,7 @@ TYPED_TEST(CheckerTest, RejectsAMeshWithoutSimplices) {
 TYPED_TEST(CheckerTest, DescribesNoMoreFaultsThanAskedForButCountsAll) {
   Mesh mesh = this->good_;
   for (int i = 0; i < 20; ++i) mesh.vertices.push_back({2.0 + i, 0, 0});
-  CheckOptions options;
+  CheckerOptions options;
   options.most_faults = 3;
   const CheckReport report = check_mesh(mesh, options);
   EXPECT_EQ(report.faults.size(), 3U);
@@ -422,9 +423,9 @@ TEST(Checker3DTest, OneOfTheThreeCutsOfAnOctahedronIsCanonical) {
 TEST(CheckerDimensionTest, OtherDimensionsAreRefused) {
   Mesh mesh;
   mesh.header.dimension = 4;
-  EXPECT_THROW(check_mesh(mesh, {}), Error);
-  EXPECT_THROW(canonical_hash(mesh), Error);
+  EXPECT_THROW(check_mesh(mesh, {}), Failure);
+  EXPECT_THROW(canonical_hash(mesh), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -62,4 +62,4 @@ TEST(Faults, OfWhichNoneAreWantedAreCountedOnly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

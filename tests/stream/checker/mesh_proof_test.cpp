@@ -11,7 +11,7 @@
 
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -99,10 +99,10 @@ TEST(MeshProof, AnApexOnTheCircleIsRightForOneOfTwoDiagonals) {
   const Point<2> b{1, 0};
   const Point<2> c{1, 1};
   const Point<2> d{0, 1};
-  CheckOptions any;
+  CheckerOptions any;
   any.any_delaunay = true;
   EXPECT_THAT((std::array{apex_side<2>({a, b, c}, d, {}), apex_side<2>({a, b, d}, c, {})}),
-              testing::UnorderedElementsAre(ApexSide::kOutside, ApexSide::kInsideByTie));
+              ::testing::UnorderedElementsAre(ApexSide::kOutside, ApexSide::kInsideByTie));
   EXPECT_EQ(apex_side<2>({a, b, c}, d, any), ApexSide::kOutside);
   EXPECT_EQ(apex_side<2>({a, b, d}, c, any), ApexSide::kOutside);
   EXPECT_EQ(apex_side<2>({a, b, c}, {0.1, 0.9}, any), ApexSide::kInside);
@@ -171,4 +171,4 @@ TEST(FaultText, NamesVerticesAndSimplices) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -11,13 +11,13 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A stream that lies in memory.
 class StreamInMemory : public MeshStreamReader {
  public:
   [[nodiscard]] const MeshStreamHeader& header() const override { return stream_header; }
-  bool read(MeshBlock& block) override {
+  bool read(MeshStreamBlock& block) override {
     if (next_ == blocks.size()) return false;
     block = blocks[next_++];
     return true;
@@ -29,7 +29,7 @@ class StreamInMemory : public MeshStreamReader {
   }
 
   MeshStreamHeader stream_header;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
   MeshTotals stream_totals;
   bool with_hash = true;
 
@@ -56,7 +56,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
   for (std::size_t begin = 0; begin < mesh.corners.size(); begin += step) {
     const std::size_t end = std::min(begin + step, mesh.corners.size());
     const auto is_old = [&](std::uint64_t v) { return number[v] != ~std::uint64_t{0}; };
-    MeshBlock block;
+    MeshStreamBlock block;
     std::vector<std::uint64_t> fresh;
     std::vector<std::uint64_t> old;
     std::unordered_map<std::uint64_t, std::uint32_t> short_number;
@@ -81,7 +81,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
     stream.blocks.push_back(std::move(block));
   }
   if (stream.blocks.empty()) stream.blocks.emplace_back();
-  MeshBlock& last = stream.blocks.back();
+  MeshStreamBlock& last = stream.blocks.back();
   std::vector<std::uint64_t> unused;
   for (std::uint64_t v = 0; v < number.size(); ++v) {
     if (number[v] == ~std::uint64_t{0}) unused.push_back(v);
@@ -115,4 +115,4 @@ void sort_along(Mesh& mesh, int axis) {
   }
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

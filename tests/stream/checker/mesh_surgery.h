@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 template <int D>
 Point<D> point_of(const Mesh& mesh, std::uint64_t vertex) {
@@ -64,7 +64,7 @@ std::uint64_t apex_of(const Mesh& mesh, std::uint64_t s, const std::vector<std::
   for (const std::uint64_t v : simplex_of<D>(mesh, s)) {
     if (!std::binary_search(facet.begin(), facet.end(), v)) return v;
   }
-  throw Error("the simplex is a facet");
+  throw Failure("the simplex is a facet");
 }
 
 /// Replaces two simplices at a facet by the D ones around the line between their apexes (a 2-2 flip
@@ -114,7 +114,7 @@ std::uint64_t find_simplex(const Mesh& mesh, bool inner) {
   for (std::uint64_t s = 0; s < open.size(); ++s) {
     if ((open[s] == 0) == inner) return s;
   }
-  throw Error("the mesh has no such simplex");
+  throw Failure("the mesh has no such simplex");
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

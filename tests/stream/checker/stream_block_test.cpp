@@ -8,7 +8,7 @@
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -97,7 +97,7 @@ TEST(StreamBlock, NamesATwinOnce) {
 
 TEST(StreamBlock, DescribesOnlyTheFirstFaults) {
   StreamBlock<2> block = block_of<2>({{0, 0}, {1, 0}, {2, 0}, {3, 0}}, {0, 1, 2, 1, 2, 3, 0, 1, 3});
-  CheckOptions options;
+  CheckerOptions options;
   options.most_faults = 2;
   block.examine(plain(), options, StreamTask::kProve);
   EXPECT_THAT(block.found.faults, SizeIs(2));
@@ -128,7 +128,7 @@ TEST(StreamBlock, CanBeUsedAgainForASmallerOne) {
 
 TEST(StreamBlock, HashesOutputCoordinates) {
   MeshStreamHeader header;
-  header.lattice = Lattice{{0.5, 0.5, 1}, {10, 20, 0}};
+  header.lattice = IntegerLattice{{0.5, 0.5, 1}, {10, 20, 0}};
   StreamBlock<2> block = block_of<2>({{0, 0}, {2, 0}, {0, 2}}, {0, 1, 2});
   block.examine({header, std::nullopt}, {}, StreamTask::kProve);
   CanonicalHash<2> hash;
@@ -138,8 +138,8 @@ TEST(StreamBlock, HashesOutputCoordinates) {
 
 TEST(StreamBlock, RefusesCornersThatAreNoSimplices) {
   StreamBlock<2> block = block_of<2>(kKite, {0, 1, 3, 1});
-  EXPECT_THROW(block.examine(plain(), {}, StreamTask::kProve), Error);
+  EXPECT_THROW(block.examine(plain(), {}, StreamTask::kProve), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

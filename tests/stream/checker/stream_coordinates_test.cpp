@@ -5,13 +5,13 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-const Lattice kEven{{0.5, 0.5, 0.01}, {100, 200, 0}};
-const Lattice kUneven{{0.5, 0.25, 0.01}, {100, 200, 0}};
+const IntegerLattice kEven{{0.5, 0.5, 0.01}, {100, 200, 0}};
+const IntegerLattice kUneven{{0.5, 0.25, 0.01}, {100, 200, 0}};
 
-MeshStreamHeader header_with(const std::optional<Lattice>& lattice) {
+MeshStreamHeader header_with(const std::optional<IntegerLattice>& lattice) {
   MeshStreamHeader header;
   header.lattice = lattice;
   return header;
@@ -63,11 +63,11 @@ TEST(StreamCoordinates, TheStreamsOwnLatticeGoesFirst) {
 TEST(StreamCoordinates, InSpaceAllThreeAxesCount) {
   const StreamCoordinates<3> uneven(header_with(kEven), std::nullopt);
   EXPECT_FALSE(uneven.on_lattice()) << "z has another scale";
-  const StreamCoordinates<3> even(header_with(Lattice{{2, 2, 2}, {0, 0, 1}}), std::nullopt);
+  const StreamCoordinates<3> even(header_with(IntegerLattice{{2, 2, 2}, {0, 0, 1}}), std::nullopt);
   EXPECT_TRUE(even.on_lattice());
   EXPECT_EQ(even.axis_off_lattice({1, 2, 2.5}), 2);
   EXPECT_EQ(even.to_output(Point<3>{1, 2, 3}), (Point<3>{2, 4, 7}));
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -15,18 +15,19 @@
 #include "tests/stream/checker/mesh_streaming.h"
 #include "tests/stream/checker/mesh_surgery.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::StreamInMemory;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::StreamInMemory;
 
 template <int D>
 Mesh triangulated(const std::vector<Point<D>>& points) {
   Mesh mesh;
   mesh.header.dimension = D;
-  const Triangulation<D> triangulation = delaunay<D>(points, {.threads = 1, .base_case_size = 100});
+  const Triangulation<D> triangulation =
+      delaunay_triangulation<D>(points, {.threads = 1, .leaf_points = 100});
   std::map<VertexId, std::uint64_t> number;
   triangulation.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
     if (simplex.infinite()) return;
@@ -44,7 +45,7 @@ Mesh triangulated(const std::vector<Point<D>>& points) {
 // The triangulation as blocks hold it: vertices on the lattice, if the family has one.
 template <int D>
 Mesh triangulated(const GeneratorOptions& options) {
-  Mesh mesh = triangulated<D>(generate_points<D>(options));
+  Mesh mesh = triangulated<D>(generated_points<D>(options));
   const auto generator = make_generator(options);
   if (generator->lattice() != nullptr) mesh.header.lattice = *generator->lattice();
   return mesh;
@@ -60,18 +61,18 @@ Mesh in_output_coordinates(Mesh mesh) {
 
 // A stream of the mesh that ends with its true totals.
 StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block) {
-  StreamInMemory stream = testing::stream_of(mesh, simplices_in_block);
+  StreamInMemory stream = test::stream_of(mesh, simplices_in_block);
   const CheckReport whole = check_mesh(in_output_coordinates(mesh), {});
   stream.stream_totals.hull_facets = whole.hull_facets;
   stream.stream_totals.canonical_hash = whole.canonical_hash;
   return stream;
 }
 
-CheckReport check(StreamInMemory stream, const CheckOptions& options = {}) {
+CheckReport check(StreamInMemory stream, const CheckerOptions& options = {}) {
   return check_mesh_stream(stream, options);
 }
 
-void expect_fault(const Mesh& mesh, const std::string& part, const CheckOptions& options = {}) {
+void expect_fault(const Mesh& mesh, const std::string& part, const CheckerOptions& options = {}) {
   for (const std::size_t block : {1, 50, 100000}) {
     const CheckReport report = check(stream_of(mesh, block), options);
     EXPECT_GT(report.fault_count, 0U);
@@ -126,9 +127,9 @@ TYPED_TEST(StreamProofTest, AcceptsSimplicesInRandomOrder) {
 
 TYPED_TEST(StreamProofTest, ReportDoesNotDependOnThreads) {
   Mesh mesh = this->good_;
-  ASSERT_TRUE(testing::flip<TypeParam::value>(mesh, false));
+  ASSERT_TRUE(test::flip<TypeParam::value>(mesh, false));
   mesh.vertices.push_back({0.5, 0.5, 0.5});
-  CheckOptions options;
+  CheckerOptions options;
   const CheckReport one = check(stream_of(mesh, 3), options);
   options.threads = 3;
   const CheckReport three = check(stream_of(mesh, 3), options);
@@ -142,7 +143,7 @@ TYPED_TEST(StreamProofTest, HoldsLittleMoreThanTheBorderOfASweep) {
   const std::uint64_t count = D == 2 ? 90000 : 27000;
   const Family family = D == 2 ? Family::kLattice : Family::kUniform;  // hulls of few facets
   Mesh mesh = triangulated<D>(GeneratorOptions{.family = family, .count = count, .dimension = D});
-  testing::sort_along<D>(mesh, 0);
+  test::sort_along<D>(mesh, 0);
   const CheckReport report = check(stream_of(mesh, 100));
   EXPECT_EQ(report.fault_count, 0U);
   EXPECT_LT(report.peak_live_vertices, report.vertices / 4);
@@ -152,10 +153,10 @@ TYPED_TEST(StreamProofTest, HoldsLittleMoreThanTheBorderOfASweep) {
 
 TYPED_TEST(StreamProofTest, RejectsAFlippedEdge) {
   Mesh mesh = this->good_;
-  ASSERT_TRUE(testing::flip<TypeParam::value>(mesh, false));
+  ASSERT_TRUE(test::flip<TypeParam::value>(mesh, false));
   expect_fault(mesh, "is not Delaunay");
   EXPECT_EQ(check(stream_of(mesh, 7)).other_ties, 0U);
-  CheckOptions any;
+  CheckerOptions any;
   any.any_delaunay = true;
   expect_fault(mesh, "is not Delaunay", any);
 }
@@ -168,11 +169,11 @@ TYPED_TEST(StreamProofTest, RejectsATieBrokenTheOtherWayUnlessAnyDelaunayWillDo)
     for (double& c : point) c = static_cast<double>(random() % (D == 2 ? 25 : 8));
   }
   Mesh mesh = triangulated<D>(points);
-  ASSERT_TRUE(testing::flip<D>(mesh, true));
+  ASSERT_TRUE(test::flip<D>(mesh, true));
   expect_fault(mesh, "as ties are broken");
   const CheckReport report = check(stream_of(mesh, 7));
   EXPECT_EQ(report.other_ties, report.fault_count);
-  CheckOptions any;
+  CheckerOptions any;
   any.any_delaunay = true;
   EXPECT_EQ(check(stream_of(mesh, 7), any).fault_count, 0U);
 }
@@ -181,7 +182,7 @@ TYPED_TEST(StreamProofTest, RejectsAMissingSimplexInsideAndAtTheBoundary) {
   constexpr int D = TypeParam::value;
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    testing::remove_simplex<D>(mesh, testing::find_simplex<D>(mesh, inner));
+    test::remove_simplex<D>(mesh, test::find_simplex<D>(mesh, inner));
     expect_fault(mesh, "the boundary is not convex");
   }
 }
@@ -198,7 +199,7 @@ TYPED_TEST(StreamProofTest, RejectsAVertexOffTheLattice) {
   Mesh mesh =
       triangulated<D>(GeneratorOptions{.family = Family::kLattice, .count = 400, .dimension = D});
   mesh.vertices[17][1] += 0.25;
-  EXPECT_THAT(check(testing::stream_of(mesh, 5)).faults,
+  EXPECT_THAT(check(test::stream_of(mesh, 5)).faults,
               Contains(HasSubstr("is off the lattice: its y")));
 }
 
@@ -210,8 +211,8 @@ TYPED_TEST(StreamProofTest, RejectsADuplicateSimplexNextToItAndFarFromIt) {
   };
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    const std::uint64_t s = testing::find_simplex<D>(mesh, inner);
-    const auto vertices = testing::simplex_of<D>(mesh, s);
+    const std::uint64_t s = test::find_simplex<D>(mesh, inner);
+    const auto vertices = test::simplex_of<D>(mesh, s);
     add(mesh, vertices, s * (D + 1));
     expect_fault(mesh, "has the same vertices as " + this->simplex_);
     Mesh far = this->good_;
@@ -258,7 +259,7 @@ TYPED_TEST(StreamProofTest, RejectsAVertexInNoSimplex) {
 TYPED_TEST(StreamProofTest, RejectsAStreamWithoutSimplices) {
   Mesh mesh;
   mesh.header.dimension = TypeParam::value;
-  EXPECT_THAT(check(testing::stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
+  EXPECT_THAT(check(test::stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
 }
 
 TYPED_TEST(StreamProofTest, RejectsEveryWrongTotalAndAWrongHash) {
@@ -288,19 +289,19 @@ TYPED_TEST(StreamProofTest, CountingFindsTheSameNumbersAndHash) {
 
 TYPED_TEST(StreamProofTest, TakesTheInputsLatticeIfTheStreamHasNone) {
   constexpr int D = TypeParam::value;
-  const Lattice centimetres{{0.01, 0.01, 0.01}, {637000.1, 4850000.03, -20}};
+  const IntegerLattice centimetres{{0.01, 0.01, 0.01}, {637000.1, 4850000.03, -20}};
   Mesh mesh =
       triangulated<D>(GeneratorOptions{.family = Family::kLattice, .count = 400, .dimension = D});
   mesh.header.lattice = centimetres;
   EXPECT_EQ(check(stream_of(mesh, 9)).fault_count, 0U);
   StreamInMemory plain = stream_of(mesh, 9);
   plain.stream_header.lattice.reset();
-  for (MeshBlock& block : plain.blocks) {
+  for (MeshStreamBlock& block : plain.blocks) {
     for (LatticePoint& vertex : block.vertices) {
       vertex = LatticePoint(centimetres.to_world(vertex).numbers());
     }
   }
-  CheckOptions options;
+  CheckerOptions options;
   options.input_lattice = centimetres;
   const CheckReport report = check(plain, options);
   EXPECT_EQ(report.fault_count, 0U);
@@ -313,7 +314,7 @@ TYPED_TEST(StreamProofTest, GivesOutVerticesInOutputCoordinatesAndProgress) {
       triangulated<D>(GeneratorOptions{.family = Family::kTerrain, .count = 400, .dimension = D});
   std::vector<WorldPoint> vertices;
   double last_fraction = 0;
-  CheckOptions options;
+  CheckerOptions options;
   options.vertex = [&](const WorldPoint& vertex) { vertices.push_back(vertex); };
   options.progress = [&](std::uint64_t, std::optional<double> fraction) {
     last_fraction = *fraction;
@@ -327,4 +328,4 @@ TYPED_TEST(StreamProofTest, GivesOutVerticesInOutputCoordinatesAndProgress) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

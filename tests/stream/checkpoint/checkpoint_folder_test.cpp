@@ -11,7 +11,7 @@
 #include "src/error.h"
 #include "stream/checkpoint/checkpoints.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,7 +40,7 @@ class Folder : public ::testing::Test {
   [[nodiscard]] std::string error_of_opening(const RunIdentity& identity) const {
     try {
       const auto folder = open(identity);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "";
@@ -85,9 +85,9 @@ TEST_F(Folder, KeepsTheLastCheckpointWhenTheNextOneFails) {
     EXPECT_THROW(folder->save_checkpoint([](StateWriter& state) {
       int other = 4;
       state(other);
-      throw Error("no");
+      throw Failure("no");
     }),
-                 Error);
+                 Failure);
   }
   EXPECT_EQ(restored(*open(identity_of("1"))), 3);
 }
@@ -157,9 +157,9 @@ TEST_F(Folder, KeepsOutputsUnderOneNameUntilTheyAreComplete) {
   std::ifstream file(output);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "some bytesso");
   const auto shorter = folder->outputs().create(output);
-  EXPECT_THROW(shorter->go_on_after(1), Error);
-  EXPECT_THROW(folder->outputs().create("-"), Error);
-  EXPECT_THROW(folder->outputs().create("/dev/null"), Error);
+  EXPECT_THROW(shorter->go_on_after(1), Failure);
+  EXPECT_THROW(folder->outputs().create("-"), Failure);
+  EXPECT_THROW(folder->outputs().create("/dev/null"), Failure);
 }
 
 TEST_F(Folder, CheckpointsAreDueByTime) {
@@ -172,4 +172,4 @@ TEST_F(Folder, CheckpointsAreDueByTime) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

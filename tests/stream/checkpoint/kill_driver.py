@@ -31,9 +31,9 @@ TILES = ["generate", "terrain", "--grid", "2x2", "-o", "tile#.las", "-n"]
 SPACE = ["generate", "uniform", "--dim", "3", "-o", "space.npy", "-n"]
 SURFACE = ["generate", "ellipsoid", "--dim", "3", "-o", "surface.npy", "-n"]
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
-PLANE = ["--tile", "5000", "--memory", "64M"]
+PLANE = ["--tile-points", "5000", "--memory", "64M"]
 SMALL = ["--memory", "32M"]  # for some million points
-IN_SPACE = ["--dim", "3", "--tile", "5000", "--memory", "96M"]
+IN_SPACE = ["--dim", "3", "--tile-points", "5000", "--memory", "96M"]
 
 # Name: input, share of the points, arguments, output or, of a batch, a pattern of its outputs; and
 # the number of ranks, if there are any.
@@ -53,7 +53,7 @@ FAMILIES = {
                                 "height,slope,density", *PLANE], "x.tif"),
     "contour": (TERRAIN, 0.5, ["contour", "terrain.las", "--interval", "20", *PLANE], "x.shp"),
     "soak": (TERRAIN, 1, ["triangulate", "terrain.las", "--memory", "256M"], "x.spm"),
-    "batch": (TILES, 1, ["batch", "tile*.las", "--to", "spm,ply", "-j", "2", "--tile", "5000",
+    "batch": (TILES, 1, ["batch", "tile*.las", "--to", "spm,ply", "-j", "2", "--tile-points", "5000",
                          "--memory", "256M"], "*.[ps]??"),
     "ranks": (SURVEY, 1, ["triangulate", "survey*.las", "--id", *PLANE], "x.spm", 3),
     "ranks_spilled": (TERRAIN, 15, ["triangulate", "terrain.las", *SMALL], "x.spm", 2),

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ TEST(RunIdentity, OfTheSameFactsIsTheSameInWhateverOrder) {
   EXPECT_EQ(a.difference_from(b), "");
   EXPECT_EQ(RunIdentity().difference_from(RunIdentity()), "");
   EXPECT_EQ(a.value_of(kOutputFact), "x.spm");
-  EXPECT_EQ(a.value_of("--tile"), "");
+  EXPECT_EQ(a.value_of("--tile-points"), "");
 }
 
 TEST(RunIdentity, TellsWhatDiffersInWords) {
@@ -52,7 +52,7 @@ TEST(RunIdentity, NamesAFewDifferencesAndCountsTheOthers) {
 
 /// A state that was made of other points must not be gone on with.
 TEST(RunIdentity, OfAFileKnowsItsSizeAndTimeOfChange) {
-  const fs::path path = fs::path(testing::TempDir()) / "run_identity_test";
+  const fs::path path = fs::path(::testing::TempDir()) / "run_identity_test";
   const auto now = [&] {
     RunIdentity identity;
     identity.add_file("input", path.string());
@@ -72,4 +72,4 @@ TEST(RunIdentity, OfAFileKnowsItsSizeAndTimeOfChange) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -52,7 +52,7 @@ std::string type_text(const Attribute& attribute) {
 /// Small whole numbers, which every type holds.
 AttributeColumns numbers_of(const Attribute& attribute, std::size_t points) {
   AttributeColumns columns({attribute}, points);
-  detail::with_number_type(attribute.type, [&](auto number) {
+  formats::with_number_type(attribute.type, [&](auto number) {
     const auto values = columns.values<decltype(number)>(attribute.name);
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = static_cast<decltype(number)>(i % 20);
@@ -61,7 +61,7 @@ AttributeColumns numbers_of(const Attribute& attribute, std::size_t points) {
   return columns;
 }
 
-class AttributeTable : public testing::CallTest {
+class AttributeTable : public test::CallTest {
  protected:
   /// In words, what becomes of an attribute in a file of that name.
   std::string outcome(const Attribute& attribute, const std::string& name) {
@@ -116,7 +116,7 @@ TEST_F(AttributeTable, OfTheDocumentationIsWhatFormatsDo) {
         fmt::format("| `{}`: {} | {} | {} | {} | {} | {} |\n", attribute.name, type_text(attribute),
                     outcomes[0], outcomes[3], outcomes[4], outcomes[5], outcomes[6]);
   }
-  std::ifstream stream(detail::test::docs_folder() / "attributes.md");
+  std::ifstream stream(test::docs_folder() / "attributes.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {});
   EXPECT_THAT(page, ::testing::HasSubstr(table));
 }

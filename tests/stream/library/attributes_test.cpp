@@ -119,7 +119,7 @@ void expect_same(const AttributeColumns& found, const AttributeColumns& expected
   EXPECT_EQ(found.meant(name), expected.meant(name)) << name;
 }
 
-class Attributes : public testing::CallTest {
+class Attributes : public test::CallTest {
  protected:
   PointsBlock read(const std::string& name, const std::vector<std::string>& wanted) {
     const auto source = open_points({file(name)}, {.attributes = wanted}, Context(options()));
@@ -220,7 +220,7 @@ TEST_F(Attributes, AreNotToldOfWhereNobodyAsksForThem) {
   const Context context(options());
   const auto points = open_points({file("points.las")}, {}, context);
   EXPECT_THAT(points->header().attributes, IsEmpty());
-  testing::OwnSink sink;
+  test::OwnSink sink;
   convert(*points, sink, context);
   EXPECT_THAT(sink.header.attributes, IsEmpty());
   EXPECT_EQ(sink.points.size(), 20U);

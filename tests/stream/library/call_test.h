@@ -17,7 +17,7 @@
 
 #include "tests/stream/library/error_code.h"
 
-namespace spillway::testing {
+namespace spillway::test {
 
 class CallTest : public ::testing::Test {
  protected:
@@ -92,4 +92,4 @@ inline std::vector<Point<3>> all_of(PointSource& source) {
   return all;
 }
 
-}  // namespace spillway::testing
+}  // namespace spillway::test

@@ -19,13 +19,13 @@
 namespace spillway {
 namespace {
 
+using test::OwnPoints;
+using test::OwnSink;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using testing::OwnPoints;
-using testing::OwnSink;
 
-class Convert : public testing::CallTest {
+class Convert : public test::CallTest {
  protected:
   PointConversion write(PointSource& source, const std::string& name,
                         const PointFileOptions& how = {}) {
@@ -34,7 +34,7 @@ class Convert : public testing::CallTest {
   }
 
   std::vector<Point<3>> read(const std::string& name) {
-    return testing::all_of(*open_points({file(name)}, {}, Context(options())));
+    return test::all_of(*open_points({file(name)}, {}, Context(options())));
   }
 
   std::string content(const std::string& name) {
@@ -78,7 +78,7 @@ TEST_F(Convert, RoundsByNoChoiceOfItsOwnWhereThatIsRefused) {
 
 TEST_F(Convert, GivesAProgramOutputCoordinates) {
   const GenerateOptions hills{.family = "terrain", .count = 70'000};
-  const auto expected = testing::all_of(*generate_points(hills));
+  const auto expected = test::all_of(*generate_points(hills));
   write(*generate_points(hills), "hills.las");
   const Context context(options());
   OwnSink sink;
@@ -123,13 +123,13 @@ TEST_F(Convert, LazHasTheSameBytesWithAnyNumberOfThreads) {
     convert(*generate_points(hills), *create_points(file("hills.laz"), {}, context), context);
     contents.push_back(content("hills.laz"));
   }
-  EXPECT_EQ(read("hills.laz"), testing::all_of(*generate_points(hills)));
+  EXPECT_EQ(read("hills.laz"), test::all_of(*generate_points(hills)));
   EXPECT_TRUE(contents[1] == contents[0]);
   EXPECT_TRUE(contents[2] == contents[0]);
 }
 
 TEST_F(Convert, AProgramFillsLazOnAllThreads) {
-  const auto all = testing::all_of(*generate_points({.family = "terrain", .count = 210'000}));
+  const auto all = test::all_of(*generate_points({.family = "terrain", .count = 210'000}));
   const Context context(options());
   const auto sink = create_points(file("hills.laz"), {.scale = {0.01}}, context);
   sink->begin({});

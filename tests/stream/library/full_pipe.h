@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// The reading end of a pipe that holds these bytes, some kilobytes at most, and ends after them.
 class FullPipe {
@@ -28,4 +28,4 @@ class FullPipe {
   std::array<int, 2> ends_{};
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

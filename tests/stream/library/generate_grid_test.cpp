@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-class GeneratedGrid : public testing::CallTest {
+class GeneratedGrid : public test::CallTest {
  protected:
   /// The points of each file, by its name.
   std::map<std::string, std::vector<Point<3>>> files() {
@@ -29,7 +29,7 @@ class GeneratedGrid : public testing::CallTest {
       const Context context(options());
       const auto source = open_points({entry.path()}, {}, context);
       const PointsHeader header = source->header();
-      auto& points = all[entry.path().filename()] = testing::all_of(*source);
+      auto& points = all[entry.path().filename()] = test::all_of(*source);
       if (header.extent) {
         EXPECT_EQ(header.count, points.size());
         expect_tight(*header.extent, points);
@@ -69,7 +69,7 @@ TEST_F(GeneratedGrid, HoldsEachPointOfAFamilyOnceAndInOrder) {
     const auto tiles = files();
     EXPECT_EQ(report.points, 70'000U);
     EXPECT_EQ(report.files, tiles.size()) << family;
-    const std::vector<Point<3>> all = testing::all_of(*generate_points(what));
+    const std::vector<Point<3>> all = test::all_of(*generate_points(what));
     std::vector<Point<3>> together;
     for (const auto& [tile, points] : tiles) {
       auto next = all.begin();
@@ -130,7 +130,7 @@ TEST_F(GeneratedGrid, IsWrittenInSeveralGroupsOfFiles) {
   for (const auto& [name, points] : files()) {
     together.insert(together.end(), points.begin(), points.end());
   }
-  EXPECT_EQ(sorted(together), sorted(testing::all_of(*generate_points(what))));
+  EXPECT_EQ(sorted(together), sorted(test::all_of(*generate_points(what))));
 }
 
 TEST_F(GeneratedGrid, RefusesWhatCannotBeAndLeavesNothing) {

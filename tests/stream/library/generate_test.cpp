@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::Contains;
 
-using Generated = testing::CallTest;
+using Generated = test::CallTest;
 
 TEST_F(Generated, PointsOfEveryFamilyComeInTheNumberThatWasAskedFor) {
   EXPECT_THAT(point_families(), Contains("terrain"));
@@ -20,7 +20,7 @@ TEST_F(Generated, PointsOfEveryFamilyComeInTheNumberThatWasAskedFor) {
     const GenerateOptions what{.family = family, .count = 70'000, .seed = 3};
     const auto source = generate_points(what);
     EXPECT_EQ(source->header().count, 70'000U) << family;
-    EXPECT_EQ(testing::all_of(*source).size(), 70'000U) << family;
+    EXPECT_EQ(test::all_of(*source).size(), 70'000U) << family;
   }
 }
 

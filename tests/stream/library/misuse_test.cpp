@@ -20,7 +20,7 @@
 
 #include "tests/stream/library/call_test.h"
 
-namespace spillway::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST_F(Misuse, SourcesOutliveTheContextTheyWereOpenedWith) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::test

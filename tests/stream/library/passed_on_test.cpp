@@ -18,10 +18,10 @@
 #include "tests/stream/library/call_test.h"
 #include "tests/test_paths.h"
 
-namespace spillway::testing {
+namespace spillway::test {
 namespace {
 
-using detail::test::shared_data_folder;
+using test::shared_data_folder;
 using ::testing::HasSubstr;
 
 /// Hands a mesh on to another sink, and counts.
@@ -106,7 +106,7 @@ class PassedOn : public CallTest, public ::testing::WithParamInterface<Given> {
 
 TEST_P(PassedOn, MeshesAreWhatTheLibraryWritesInEveryFormat) {
   const std::uint64_t direct = hash_of(*open());
-  for (const detail::MeshFormat* const format : detail::mesh_formats()) {
+  for (const formats::MeshFormat* const format : formats::mesh_formats()) {
     const bool is_read = format->read != nullptr || format->open_stream != nullptr;
     const bool is_written = format->open_writer != nullptr || format->open_block_writer != nullptr;
     if (!is_read || !is_written || format->rounds_coordinates) continue;
@@ -251,4 +251,4 @@ TEST_F(PassedOnWrongly, StepsThatAreNotTheCoordinatesAreRefused) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::test

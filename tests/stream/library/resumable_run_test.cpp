@@ -133,7 +133,7 @@ TEST_F(ResumableRun, GoesOnWithARasterOfTheSamePixelsAlone) {
 TEST_F(ResumableRun, LeavesTheMeshForWhatFailsButNotForWantOfMemory) {
   const auto folder_after = [&](ErrorCode code, Remedy remedy) {
     const auto sink =
-        mesh_to([&](const MeshBlock&) { throw detail::Error("no", code, {.remedy = remedy}); });
+        mesh_to([&](const MeshBlock&) { throw runtime::Failure("no", code, {.remedy = remedy}); });
     const auto source = points();
     EXPECT_EQ(error_of(*source, *sink, options()), "no");
     return fs::exists(path("run"));

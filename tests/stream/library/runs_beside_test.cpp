@@ -11,7 +11,7 @@
 #include "src/runtime/process_memory.h"
 #include "tests/stream/library/call_test.h"
 
-namespace spillway::testing {
+namespace spillway::test {
 namespace {
 
 using RunsBeside = CallTest;
@@ -23,7 +23,7 @@ constexpr std::uint64_t kBesides = 14 * kMiB;
 TEST_F(RunsBeside, KeepToTheSumOfTheirLimits) {
   const std::array<std::uint64_t, 2> limits = {40 * kMiB, 64 * kMiB};
   std::array<MeshTotals, 2> totals;
-  const std::uint64_t before = detail::resident_memory();
+  const std::uint64_t before = runtime::resident_memory();
   std::vector<std::thread> threads;
   for (std::size_t r = 0; r < limits.size(); ++r) {
     threads.emplace_back([&, r] {
@@ -35,7 +35,7 @@ TEST_F(RunsBeside, KeepToTheSumOfTheirLimits) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(totals[0], totals[1]);
-  EXPECT_LE(detail::peak_memory(), before + limits[0] + limits[1] + limits.size() * kBesides);
+  EXPECT_LE(runtime::peak_memory(), before + limits[0] + limits[1] + limits.size() * kBesides);
 }
 
 TEST_F(RunsBeside, BeginAndEndAsTheyLikeWithOneResult) {
@@ -75,4 +75,4 @@ TEST_F(RunsBeside, MayBeBegunByASinkOfAnother) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::test

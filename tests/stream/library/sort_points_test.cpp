@@ -18,11 +18,11 @@
 namespace spillway {
 namespace {
 
+using test::OwnPoints;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::OwnPoints;
 
-class Sort : public testing::CallTest {
+class Sort : public test::CallTest {
  protected:
   PointConversion sort(PointSource& source, const std::string& name, const SortOptions& how = {},
                        const std::string& memory = "32M", std::vector<double> scale = {}) {
@@ -35,11 +35,11 @@ class Sort : public testing::CallTest {
   }
 
   std::vector<Point<3>> read(const std::string& name) {
-    return testing::all_of(*open_points({file(name)}, {}, Context(options())));
+    return test::all_of(*open_points({file(name)}, {}, Context(options())));
   }
 
-  detail::PointHeader header_of(const std::string& name) {
-    return detail::open_point_reader(detail::disk(), file(name), {})->header();
+  formats::PointHeader header_of(const std::string& name) {
+    return formats::open_point_reader(formats::disk(), file(name), {})->header();
   }
 
   /// The reader proves that cells are what their table says.
@@ -58,11 +58,11 @@ TEST_F(Sort, KeepsAllPointsOfALattice) {
   EXPECT_EQ(done.points.read, 600'000U);
   EXPECT_GE(done.cells, 10U);
   EXPECT_GT(done.spilled_points, 0U);
-  const detail::PointHeader header = header_of("hills.spp");
+  const formats::PointHeader header = header_of("hills.spp");
   EXPECT_TRUE(header.lattice.has_value());
   EXPECT_EQ(header.regions.size(), done.cells);
-  for (const detail::PointRegion& cell : header.regions) EXPECT_LE(cell.count, 65'536U);
-  expect_same_points(testing::all_of(*generate_points(hills)), "hills.spp");
+  for (const formats::PointRegion& cell : header.regions) EXPECT_LE(cell.count, 65'536U);
+  expect_same_points(test::all_of(*generate_points(hills)), "hills.spp");
   EXPECT_EQ(phases_.front(), "read");
   EXPECT_EQ(phases_.back(), "write");
 }
@@ -70,16 +70,16 @@ TEST_F(Sort, KeepsAllPointsOfALattice) {
 TEST_F(Sort, WritesCellsSoThatLargerOnesOfThemAreCompleteOneAfterTheOther) {
   const GenerateOptions hills{.family = "terrain", .count = 600'000};
   sort(*generate_points(hills), "told.spp", {.cell_points = 2'000});
-  OwnPoints source(testing::all_of(*generate_points(hills)));  // tells no extent
+  OwnPoints source(test::all_of(*generate_points(hills)));  // tells no extent
   sort(source, "untold.spp", {.cell_points = 2'000});
   for (const char* const name : {"told.spp", "untold.spp"}) {
-    std::vector<detail::InputRegion> cells;
-    for (const detail::PointRegion& cell : header_of(name).regions) {
+    std::vector<stream::InputRegion> cells;
+    for (const formats::PointRegion& cell : header_of(name).regions) {
       cells.push_back({0, cell.box, cell.count});
     }
     for (const double most_points : {8'000, 32'000}) {
-      const detail::RegionPlan plan =
-          detail::plan_regions(cells, {.most_points = most_points, .any_order = false});
+      const stream::RegionPlan plan =
+          stream::plan_regions(cells, {.most_points = most_points, .any_order = false});
       EXPECT_LT(plan.most_waiting, 6 * most_points) << name;
     }
   }
@@ -90,14 +90,14 @@ TEST_F(Sort, DividesSpaceWhereThatIsWanted) {
   sort(*generate_points(cloud), "columns.spp", {.cell_points = 2'000});
   sort(*generate_points(cloud), "cubes.spp", {.dimension = 3, .cell_points = 2'000});
   const auto all_reach_through = [&](const std::string& name) {
-    return std::ranges::all_of(header_of(name).regions, [](const detail::PointRegion& cell) {
+    return std::ranges::all_of(header_of(name).regions, [](const formats::PointRegion& cell) {
       return cell.box.extent(2) > 0.9;
     });
   };
   EXPECT_TRUE(all_reach_through("columns.spp"));
   EXPECT_FALSE(all_reach_through("cubes.spp"));
-  expect_same_points(testing::all_of(*generate_points(cloud)), "columns.spp");
-  expect_same_points(testing::all_of(*generate_points(cloud)), "cubes.spp");
+  expect_same_points(test::all_of(*generate_points(cloud)), "columns.spp");
+  expect_same_points(test::all_of(*generate_points(cloud)), "cubes.spp");
 }
 
 TEST_F(Sort, PointsWithoutHeightsStayWithout) {
@@ -105,7 +105,7 @@ TEST_F(Sort, PointsWithoutHeightsStayWithout) {
   sort(*generate_points(plane), "plane.spp", {.cell_points = 100});
   EXPECT_EQ(header_of("plane.spp").coordinates, 2);
   EXPECT_GE(header_of("plane.spp").regions.size(), 50U);
-  expect_same_points(testing::all_of(*generate_points(plane)), "plane.spp");
+  expect_same_points(test::all_of(*generate_points(plane)), "plane.spp");
 }
 
 TEST_F(Sort, AnyNumberOfPoints) {
@@ -157,10 +157,10 @@ TEST_F(Sort, RoundsBeforeItDivides) {
   EXPECT_TRUE(done.rounded);
   EXPECT_NEAR(done.farthest, 0.5, 0.5);
   std::map<std::pair<double, double>, std::size_t> cell_of;
-  const auto reader = detail::open_point_reader(detail::disk(), file("coarse.spp"), {});
-  detail::RawPoints raw;
+  const auto reader = formats::open_point_reader(formats::disk(), file("coarse.spp"), {});
+  formats::RawPoints raw;
   while (reader->fetch(raw)) {
-    for (const detail::LatticePoint& point : raw.decoded.points) {
+    for (const geometry::LatticePoint& point : raw.decoded.points) {
       const auto [place, is_new] = cell_of.try_emplace({point[0], point[1]}, raw.region);
       EXPECT_EQ(place->second, raw.region);
     }

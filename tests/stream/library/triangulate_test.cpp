@@ -26,7 +26,7 @@ namespace spillway {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::vector<Point<3>> random_points(std::size_t count, std::uint64_t seed = 1) {
   std::mt19937_64 random(seed);
@@ -78,10 +78,10 @@ class FailingSink : public MeshSink {
   void write(const MeshBlock& /*block*/) override { throw std::runtime_error("the line is cut"); }
 };
 
-class Streams : public testing::Test {
+class Streams : public ::testing::Test {
  protected:
   Streams() {
-    std::string name = testing::TempDir() + "spillway-test-library-XXXXXX";
+    std::string name = ::testing::TempDir() + "spillway-test-library-XXXXXX";
     if (::mkdtemp(name.data()) != nullptr) folder_ = name;
   }
   ~Streams() override { fs::remove_all(folder_); }
@@ -197,7 +197,7 @@ TEST_F(Streams, BesideEachOtherWithDifferentOptionsGiveTheRightResultEach) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_THAT(hashes, testing::Each(hashes.front()));
+  EXPECT_THAT(hashes, ::testing::Each(hashes.front()));
 }
 
 /// Threads of this process.
@@ -350,7 +350,7 @@ TEST_F(FalseBoxes, LetARunToAFileBeginAgainAndTellTheProgram) {
   telling.warning = [&](std::string_view) { ++warnings; };
   const Context context(telling);
   TriangulateOptions how{.tile_points = 2000};
-  const auto trace = std::make_shared<detail::KeptTrace>();
+  const auto trace = std::make_shared<test::KeptTrace>();
   how.trace = trace;
   const auto source = open_points({files()}, {}, context);
   const Report report =
@@ -358,7 +358,7 @@ TEST_F(FalseBoxes, LetARunToAFileBeginAgainAndTellTheProgram) {
   EXPECT_EQ(warnings, 1);
   EXPECT_EQ(trace->begun_again, 1);
   EXPECT_EQ(
-      static_cast<std::uint64_t>(std::ranges::count(trace->nodes, 0U, &detail::TaskNode::level)),
+      static_cast<std::uint64_t>(std::ranges::count(trace->nodes, 0U, &stream::TaskNode::level)),
       report.tiles);
   EXPECT_FALSE(trace->sums.tasks.empty());
   EXPECT_EQ(report.points.read, 40'000U);

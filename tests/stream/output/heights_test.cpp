@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Stack {
   std::vector<VertexId> input_index;
-  std::vector<Duplicate> duplicates;
+  std::vector<DroppedDuplicate> duplicates;
 };
 
 /// Three points at one place, input indices 4, 2, 7 (the first is 2), and one elsewhere.
@@ -49,4 +49,4 @@ TEST(Heights, MeanCountsEveryPointOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -16,26 +16,26 @@ using ::testing::IsEmpty;
 
 class KeptSlabs : public BlockSink {
  public:
-  void absorb(MeshBlock&) override { ++absorbed; }
-  void write(MeshBlock&& block) override { blocks.push_back(std::move(block)); }
+  void absorb(MeshStreamBlock&) override { ++absorbed; }
+  void write(MeshStreamBlock&& block) override { blocks.push_back(std::move(block)); }
   void finish(const MeshTotals&) override {}
 
   std::atomic<int> absorbed = 0;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
 };
 
-MeshBlock block_of(std::size_t vertices, double x, std::vector<std::uint32_t> corners = {}) {
-  MeshBlock block;
+MeshStreamBlock block_of(std::size_t vertices, double x, std::vector<std::uint32_t> corners = {}) {
+  MeshStreamBlock block;
   block.vertices.assign(vertices, LatticePoint{x, 0, 0});
   block.corners = std::move(corners);
   return block;
 }
 
-class SequencerTest : public testing::Test {
+class SequencerTest : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<double> written() const {
     std::vector<double> order;
-    for (const MeshBlock& block : sink_.blocks) order.push_back(block.vertices.at(0)[0]);
+    for (const MeshStreamBlock& block : sink_.blocks) order.push_back(block.vertices.at(0)[0]);
     return order;
   }
 
@@ -79,7 +79,7 @@ TEST_F(SequencerTest, TakesTheTableOfBlocksOfTheBudget) {
     sequencer.open_slot(1, 2000);
     EXPECT_GE(budget_.used(), 3000 * sizeof(std::uint64_t));
     EXPECT_LE(budget_.used(), 3000 * sizeof(std::uint64_t) + 100);
-    EXPECT_THROW(sequencer.open_slot(2, 1 << 20), Error);
+    EXPECT_THROW(sequencer.open_slot(2, 1 << 20), Failure);
   }
   EXPECT_EQ(budget_.used(), 0U);
 }
@@ -134,4 +134,4 @@ TEST_F(SequencerTest, NobodyWaitsAfterGivingUp) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

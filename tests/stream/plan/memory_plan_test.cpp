@@ -8,7 +8,7 @@
 #include "src/error.h"
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -33,19 +33,19 @@ TEST(MemoryPlan, NamesTheLeastOfTheWhole) {
 
 TEST(MemoryPlan, LoadsMoreTilesAtATimeWhereThereIsRoomForThem) {
   const MemoryPlan little = plan_memory(64 * kMiB, 2, 2);
-  EXPECT_EQ(little.tile_capacity, little.tile_room);
+  EXPECT_EQ(little.tile_points, little.tile_room);
   const MemoryPlan much = plan_memory(2048 * kMiB, 2, 2);
-  EXPECT_EQ(much.tile_capacity, 750'000U);
-  EXPECT_GT(much.tile_room, 10 * much.tile_capacity);
+  EXPECT_EQ(much.tile_points, 750'000U);
+  EXPECT_GT(much.tile_room, 10 * much.tile_points);
   const MemoryPlan space = plan_memory(2048 * kMiB, 3, 2);
-  EXPECT_EQ(space.tile_capacity, space.tile_room);
+  EXPECT_EQ(space.tile_points, space.tile_room);
 }
 
 TEST(MemoryPlan, MakesLargerTilesOfVeryManyPoints) {
   const MemoryPlan plan = plan_memory(1024 * kMiB, 2, 2);
-  EXPECT_EQ(tile_capacity_for(1'000'000, plan), plan.tile_capacity);
-  EXPECT_EQ(tile_capacity_for(8'192'000'000, plan), 1'000'000U);
-  EXPECT_EQ(tile_capacity_for(1ULL << 60, plan), plan.tile_room);
+  EXPECT_EQ(tile_points_for(1'000'000, plan), plan.tile_points);
+  EXPECT_EQ(tile_points_for(8'192'000'000, plan), 1'000'000U);
+  EXPECT_EQ(tile_points_for(1ULL << 60, plan), plan.tile_room);
 }
 
 TEST(MemoryPlan, HasMoreBatchesForMoreThreads) {
@@ -71,13 +71,13 @@ TEST(MemoryPlan, DependsOnThreadsOnlyInTheirNumber) {
   for (const int dimension : {2, 3}) {
     const MemoryPlan one = plan_memory(256 * kMiB, dimension, 1);
     const MemoryPlan many = plan_memory(256 * kMiB, dimension, 64);
-    EXPECT_EQ(one.tile_capacity, many.tile_capacity);
-    EXPECT_EQ(one.leaf_size, many.leaf_size);
+    EXPECT_EQ(one.tile_points, many.tile_points);
+    EXPECT_EQ(one.leaf_points, many.leaf_points);
     EXPECT_EQ(one.buffered_points, many.buffered_points);
     EXPECT_GE(many.threads, 2U);
-    EXPECT_LE(many.leaf_size, many.tile_capacity);
+    EXPECT_LE(many.leaf_points, many.tile_points);
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

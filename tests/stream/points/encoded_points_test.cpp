@@ -11,7 +11,7 @@
 #include "formats/blocks/block.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -34,7 +34,7 @@ std::string error_of(std::span<const std::byte> block) {
   PointBlock points;
   try {
     decode_points(block, {"tile 7", at_byte(0)}, points);
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return "no error";
@@ -134,4 +134,4 @@ TEST(EncodedBlock, TooManyPointsAreRefused) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "stream/output/heights.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 const std::vector<LatticePoint> kPoints = {{1, 2, 5}, {1, 2, 3}, {1, 2, 9}, {1, 2, 3}, {1, 2, 9}};
@@ -68,9 +68,9 @@ TEST(EqualPoints, ChoosesWhatIsChosenOfPointsInMemory) {
   }
   for (const Heights choice :
        {Heights::kFirst, Heights::kLowest, Heights::kHighest, Heights::kMean}) {
-    std::vector<Duplicate> duplicates;
+    std::vector<DroppedDuplicate> duplicates;
     for (std::size_t i = 1; i < kCount; ++i) {
-      Duplicate& duplicate = duplicates.emplace_back();
+      DroppedDuplicate& duplicate = duplicates.emplace_back();
       duplicate.dropped = static_cast<VertexId>(i);
       duplicate.kept = 0;
     }
@@ -87,4 +87,4 @@ TEST(EqualPoints, ChoosesWhatIsChosenOfPointsInMemory) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

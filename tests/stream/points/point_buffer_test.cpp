@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kPiece = PointBuffer::kChunk;
@@ -129,4 +129,4 @@ TEST(PointBuffer, IsEmptyAfterItIsDrainedAndCanBeUsedAgain) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

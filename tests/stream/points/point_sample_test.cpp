@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<LatticePoint> numbered_points(std::size_t count) {
@@ -88,4 +88,4 @@ TEST(ExpectedPoints, AreNoneIfPointsHaveComeFromEverywhere) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -22,7 +22,7 @@ template <int D>
 std::string refusal(const PointSpan<D>& span, std::uint64_t points) {
   try {
     refuse_flat_points(span, points);
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return "";
@@ -101,4 +101,4 @@ TEST(PointSpan, OfPartsIsThatOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

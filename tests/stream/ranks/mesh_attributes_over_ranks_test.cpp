@@ -11,10 +11,10 @@
 #include "tests/stream/ranks/shared_folder.h"
 #include "tests/stream/ranks/small_rank_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 AttributeLayout coloured() {
   return AttributeLayout({{.name = "number", .type = NumberType::kInt32},
@@ -24,7 +24,7 @@ AttributeLayout coloured() {
 }
 
 /// Of vertices from `first` on: their number and three colours.
-void add_records(MeshBlock& block, std::uint64_t first, std::uint16_t blue) {
+void add_records(MeshStreamBlock& block, std::uint64_t first, std::uint16_t blue) {
   for (std::uint64_t i = first; i < first + block.vertices.size(); ++i) {
     const std::size_t at = block.attributes.size();
     block.attributes.resize(at + coloured().record_size());
@@ -55,7 +55,7 @@ Mesh written(const std::string& name, std::uint16_t blue) {
   header.attributes = coloured();
   const auto output =
       open_mesh_output(disk(), mesh_target(path, "", false), header, *scratch, world());
-  MeshBlock own = own_block();
+  MeshStreamBlock own = own_block();
   add_records(own, 3 * static_cast<std::uint64_t>(world().rank()), 7);
   output->writer().write(std::move(own));
   RankMesh mesh = small_rank_mesh();
@@ -93,4 +93,4 @@ TEST(MeshAttributesOverRanks, ColoursOfPlyAreBytesUnlessAnyRankHasMore) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -14,12 +14,12 @@
 #include "src/delaunay/delaunay.h"
 #include "tests/stream/ranks/rank_runner.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// The simplices of a triangulation in memory, as sorted input indices, sorted.
 template <int D>
 std::vector<std::array<VertexId, D + 1>> expected_simplices(const std::vector<Point<D>>& points) {
-  const Triangulation<D> mesh = delaunay<D>(points, {.threads = 1});
+  const Triangulation<D> mesh = delaunay_triangulation<D>(points, {.threads = 1});
   std::vector<std::array<VertexId, D + 1>> simplices;
   mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
     if (simplex.infinite()) return;
@@ -36,12 +36,12 @@ std::vector<std::array<VertexId, D + 1>> expected_simplices(const std::vector<Po
 template <int D>
 void expect_one_mesh(const std::vector<Point<D>>& points, std::size_t files,
                      const EngineOptions& options) {
-  SCOPED_TRACE(testing::Message() << points.size() << " points in " << files << " files, tiles of "
-                                  << options.asked.tile_points);
+  SCOPED_TRACE(::testing::Message() << points.size() << " points in " << files
+                                    << " files, tiles of " << options.asked.tile_points);
   const auto expected = expected_simplices<D>(points);
   if (expected.empty()) return;  // refused, by one rank: tested by the command
   std::vector<std::string> paths;
-  const distributed::Ranks& ranks = distributed::world();
+  const distributed::Ranks& ranks = test::world();
   if (ranks.rank() == 0) paths = write_shared_points<D>(points, files);
   ranks.barrier();
   const RankRunResult run = run_over_ranks<D>(paths, options);
@@ -58,9 +58,9 @@ void expect_one_mesh(const std::vector<Point<D>>& points, std::size_t files,
       std::filesystem::remove(path);
       return one;
     }();
-    EXPECT_EQ(run.mesh.totals, alone.figures.mesh);
+    EXPECT_EQ(run.mesh.totals, alone.statistics.mesh);
     for (const std::string& path : paths) std::filesystem::remove(path);
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -46,7 +46,7 @@ MergedSection merged(std::uint32_t section, std::uint64_t first, std::size_t fre
 
 std::vector<std::pair<std::uint64_t, std::uint64_t>> runs_of(const PartFileNumbers& numbers) {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> runs;
-  for (const IdRun& run : numbers.global_ids()) runs.emplace_back(run.first, run.count);
+  for (const IdRange& run : numbers.global_ids()) runs.emplace_back(run.first, run.count);
   return runs;
 }
 
@@ -72,7 +72,7 @@ TEST(PartFileNumbers, VerticesOfOthersAreNewOnesAndOwnOnesAreNot) {
   PartFileNumbers numbers(mesh);
   MergedSection section = merged(2, 15, 2, {12, 3, 14}, {0, 1, 2, 2, 3, 4}, true);
   section.mesh.finalized = {0, 3, 4};
-  const MeshBlock block = numbers.take(std::move(section));
+  const MeshStreamBlock block = numbers.take(std::move(section));
   EXPECT_THAT(block.vertices, ElementsAre(point_of(15), point_of(16), point_of(12), point_of(14)));
   EXPECT_THAT(block.input_index, ElementsAre(1015, 1016, 1012, 1014));
   EXPECT_THAT(block.imported, ElementsAre(3));
@@ -86,7 +86,7 @@ TEST(PartFileNumbers, AVertexOfAnotherRankIsRepeatedOnce) {
   const RankMesh mesh = whole(0);
   PartFileNumbers numbers(mesh);
   numbers.take(merged(2, 15, 2, {12, 14}, {0, 2, 3}));
-  const MeshBlock block = numbers.take(merged(3, 17, 1, {12, 16, 0, 13}, {0, 1, 2, 3, 4, 0}));
+  const MeshStreamBlock block = numbers.take(merged(3, 17, 1, {12, 16, 0, 13}, {0, 1, 2, 3, 4, 0}));
   EXPECT_THAT(block.vertices, ElementsAre(point_of(17), point_of(13)));
   EXPECT_THAT(block.imported, ElementsAre(12, 11, 0))
       << "by their numbers in the part: repeated, of the merge before, of the tiles";
@@ -95,4 +95,4 @@ TEST(PartFileNumbers, AVertexOfAnotherRankIsRepeatedOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

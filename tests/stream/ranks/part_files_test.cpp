@@ -15,11 +15,11 @@
 #include "tests/stream/ranks/shared_folder.h"
 #include "tests/stream/ranks/small_rank_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using distributed::world;
+using test::world;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;
@@ -84,8 +84,8 @@ TEST(PartFiles, AreNotThereBeforeAllAreComplete) {
 
 TEST(PartFiles, ThatCannotBeCreatedAreAnError) {
   const distributed::Ranks alone = world().split(world().rank());
-  EXPECT_THROW(Opened("/nowhere/at/all/mesh.ply", "", alone), Error);
+  EXPECT_THROW(Opened("/nowhere/at/all/mesh.ply", "", alone), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -16,10 +16,10 @@
 #include "tests/stream/quiet_setup.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 class RankCheckpointsTest : public ::testing::Test {
  protected:
@@ -133,8 +133,8 @@ class InterruptedSink final : public BlockSink {
  public:
   InterruptedSink(BlockSink& sink, int blocks, std::function<void()> interrupt)
       : sink_(sink), left_(blocks), interrupt_(std::move(interrupt)) {}
-  void absorb(MeshBlock& block) override { sink_.absorb(block); }
-  void write(MeshBlock&& block) override {
+  void absorb(MeshStreamBlock& block) override { sink_.absorb(block); }
+  void write(MeshStreamBlock&& block) override {
     if (left_-- == 0) interrupt_();
     sink_.write(std::move(block));
   }
@@ -182,4 +182,4 @@ TEST_F(RankCheckpointsTest, LeadToTheSameMeshThoughNotAllRanksHaveMadeOneAlone) 
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -20,10 +20,10 @@
 #include "tests/distributed/world.h"
 #include "tests/stream/library/error_code.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 /// How many vertices each hundredth of x has.
 struct Columns {
@@ -102,4 +102,4 @@ TEST_F(RunsOverRanks, RefusePointsOfAProgram) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -25,33 +25,33 @@
 #include "formats/points/create_points.h"
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
-#include "stream/output/open_facets.h"
+#include "stream/output/unpaired_facets.h"
 #include "stream/ranks/mesh_output.h"
 #include "tests/distributed/world.h"
 #include "tests/faulty_file_system.h"
 #include "tests/stream/quiet_setup.h"
 #include "tests/stream/ranks/shared_folder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using distributed::world;
+using test::world;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class KeptSlabs : public BlockSink {
  public:
-  void write(MeshBlock&& block) override { blocks.push_back(std::move(block)); }
+  void write(MeshStreamBlock&& block) override { blocks.push_back(std::move(block)); }
   void finish(const MeshTotals&) override {}
 
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
 };
 
 /// What this rank has of a mesh, to be written any number of times.
 struct MadeMesh {
   MeshStreamHeader header;
-  std::vector<MeshBlock> blocks;
+  std::vector<MeshStreamBlock> blocks;
   RankMesh mesh;
 };
 
@@ -80,7 +80,7 @@ MadeMesh make(const MeshCase& made, const SharedFolder& folder) {
   if (world().rank() == 0) {
     PointWriterOptions options;
     options.count = made.points;
-    if (made.lattice) options.lattice = Lattice{{0.01, 0.01, 0.01}, {500000, 4100000, -3}};
+    if (made.lattice) options.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {500000, 4100000, -3}};
     const auto writer = open_point_writer(disk(), path, options);
     writer->write(random_points(made), {});
     writer->finish();
@@ -115,7 +115,7 @@ std::uint64_t write(const MadeMesh& made, FileSystem& files, const std::string& 
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   const auto output =
       open_mesh_output(files, mesh_target(path, format, parts), made.header, *scratch, world());
-  for (MeshBlock block : made.blocks) output->writer().write(std::move(block));
+  for (MeshStreamBlock block : made.blocks) output->writer().write(std::move(block));
   RankMesh mesh = made.mesh;
   const std::uint64_t bytes = output->finish(mesh);
   world().barrier();
@@ -186,7 +186,7 @@ TEST(RankOutput, OneFileThatAllWriteToIsTheMeshOfAll) {
     EXPECT_EQ(ply.header.crs, "EPSG:25832");
     EXPECT_EQ(ply.header.lattice, made.header.lattice);
     const auto stream = open_mesh_stream_reader(disk(), folder / "a.spm");
-    MeshBlock block;
+    MeshStreamBlock block;
     std::uint64_t open = 0;
     while (stream->read(block)) open += block.vertices.size() - block.finalized.size();
     EXPECT_EQ(open, 0U) << "vertices that are never finalized";
@@ -331,7 +331,7 @@ TEST(RankOutput, PartsTogetherAreTheMeshOfAll) {
 
 template <int D>
 std::uint64_t open_facets(const Mesh& mesh) {
-  OpenFacets<D> facets;
+  UnpairedFacets<D> facets;
   for (std::size_t i = 0; i < mesh.corners.size(); i += D + 1) {
     std::array<std::uint64_t, D + 1> simplex;
     std::copy_n(mesh.corners.begin() + static_cast<std::ptrdiff_t>(i), D + 1, simplex.begin());
@@ -349,7 +349,7 @@ TEST(RankOutput, APartOfAStreamIsAStreamThatTellsOfItself) {
     for (int part = 0; part < world().size(); ++part) {
       const std::string path = part_file_name(folder / "a.spm", kSpmMesh, part, world().size());
       const auto stream = open_mesh_stream_reader(disk(), path);
-      MeshBlock block;
+      MeshStreamBlock block;
       while (stream->read(block)) {
       }
       const Mesh mesh = read_mesh(disk(), path);
@@ -439,7 +439,7 @@ TEST(RankOutput, WhatCannotBeCreatedIsSaidAtOnce) {
     header.dimension = dimension;
     try {
       open_mesh_output(disk(), mesh_target(path, "", false), header, *scratch, world());
-    } catch (const Error& e) {
+    } catch (const Failure& e) {
       return e.what();
     }
     return "";
@@ -450,4 +450,4 @@ TEST(RankOutput, WhatCannotBeCreatedIsSaidAtOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

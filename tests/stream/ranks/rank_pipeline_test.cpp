@@ -7,23 +7,23 @@
 #include "tests/generators/family_cases.h"
 #include "tests/stream/ranks/one_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 void expect_one_mesh(const FamilyCase& family, std::uint64_t count, std::uint64_t seed,
                      std::size_t files, const EngineOptions& options) {
-  SCOPED_TRACE(testing::Message() << count << " points, seed " << seed);
+  SCOPED_TRACE(::testing::Message() << count << " points, seed " << seed);
   const GeneratorOptions generate{family.family, count, family.dimension, seed};
   if (family.dimension == 2) {
-    expect_one_mesh<2>(generate_points<2>(generate), files, options);
+    test::expect_one_mesh<2>(generated_points<2>(generate), files, options);
   } else {
-    expect_one_mesh<3>(generate_points<3>(generate), files, options);
+    test::expect_one_mesh<3>(generated_points<3>(generate), files, options);
   }
 }
 
-class MeshOfRanks : public testing::TestWithParam<FamilyCase> {};
+class MeshOfRanks : public ::testing::TestWithParam<FamilyCase> {};
 
 TEST_P(MeshOfRanks, EqualsThatOfOneProcessForSmallSets) {
   for (const std::uint64_t count : {3, 4, 5, 7, 12, 30, 100}) {
@@ -44,24 +44,24 @@ TEST_P(MeshOfRanks, EqualsThatOfOneProcessForManyTilesThatSpill) {
   expect_one_mesh(GetParam(), count, 3, 2, {.threads = 2});
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, MeshOfRanks, testing::ValuesIn(all_family_cases()),
+INSTANTIATE_TEST_SUITE_P(Families, MeshOfRanks, ::testing::ValuesIn(all_family_cases()),
                          family_case_name);
 
 TEST(RanksInThePipeline, GetAboutAsManyPointsEachAlsoOfSkewedSets) {
   for (const Family family : {Family::kNormal, Family::kClusters, Family::kTerrain}) {
-    const auto points = generate_points<2>({family, 40'000, 2, 5});
+    const auto points = generated_points<2>({family, 40'000, 2, 5});
     std::vector<std::string> paths;
     if (world().rank() == 0) paths = write_shared_points<2>(points, 9);
     world().barrier();
     const RankRunResult run = run_over_ranks<2>(paths, {.threads = 1});
     const double even = 40'000.0 / world().size();
-    EXPECT_NEAR(static_cast<double>(run.mesh.figures.mesh.points), even, 0.1 * even);
+    EXPECT_NEAR(static_cast<double>(run.mesh.statistics.mesh.points), even, 0.1 * even);
     for (const std::string& path : paths) std::filesystem::remove(path);
   }
 }
 
 TEST(RanksInThePipeline, CountOpenFacetsOfAllTogetherWhereLongEdgesAreLeftOut) {
-  const auto points = generate_points<2>({Family::kUniform, 3'000, 2, 5});
+  const auto points = generated_points<2>({Family::kUniform, 3'000, 2, 5});
   std::vector<std::string> paths;
   if (world().rank() == 0) paths = write_shared_points<2>(points, 5);
   world().barrier();
@@ -72,13 +72,13 @@ TEST(RanksInThePipeline, CountOpenFacetsOfAllTogetherWhereLongEdgesAreLeftOut) {
   const StreamRun alone = run_stream<2>(path, options);
   std::filesystem::remove(path);
   EXPECT_GT(run.mesh.left_out, 0U);
-  EXPECT_EQ(run.mesh.left_out, alone.figures.left_out);
-  EXPECT_EQ(run.mesh.totals, alone.figures.mesh);
+  EXPECT_EQ(run.mesh.left_out, alone.statistics.left_out);
+  EXPECT_EQ(run.mesh.totals, alone.statistics.mesh);
   for (const std::string& p : paths) std::filesystem::remove(p);
 }
 
 TEST(RanksInThePipeline, SayWhatTheySentAndMerged) {
-  const auto points = generate_points<2>({Family::kUniform, 20'000, 2, 5});
+  const auto points = generated_points<2>({Family::kUniform, 20'000, 2, 5});
   std::vector<std::string> paths;
   if (world().rank() == 0) paths = write_shared_points<2>(points, 8);
   world().barrier();
@@ -109,4 +109,4 @@ TEST(RanksInThePipeline, SayWhatTheySentAndMerged) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -19,7 +19,7 @@
 #include "tests/distributed/world.h"
 #include "tests/stream/ranks/one_mesh.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::optional<distributed::Ranks> job;
@@ -49,7 +49,7 @@ std::vector<Point<D>> random_points(Random& random, std::size_t scale) {
     const auto families = family_names();
     const Family family = family_by_name(families[up_to(random, families.size() - 1)]);
     const bool dense = D == 3 && family == Family::kLines;  // n^2/4 tetrahedra
-    return generate_points<D>(
+    return generated_points<D>(
         {family, dense ? std::min<std::uint64_t>(count, 80) : count, D, random()});
   }
   std::vector<Point<D>> points(count);
@@ -73,7 +73,7 @@ void try_set(std::uint64_t seed, std::size_t scale) {
 bool sweep(std::uint64_t first, std::uint64_t sets, std::size_t scale) {
   for (std::uint64_t seed = first; seed < first + sets; ++seed) {
     seed % 2 == 0 ? try_set<2>(seed, scale) : try_set<3>(seed, scale);
-    if (testing::Test::HasFailure()) {
+    if (::testing::Test::HasFailure()) {
       fmt::print(stderr, "rank {}: set {} is wrong\n", job->rank(), seed);
       return false;
     }
@@ -87,13 +87,13 @@ bool sweep(std::uint64_t first, std::uint64_t sets, std::size_t scale) {
 
 }  // namespace
 
-const distributed::Ranks& distributed::world() { return *job; }
+const distributed::Ranks& test::world() { return *job; }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test
 
 int main(int argc, char** argv) {
-  using namespace spillway::detail;
-  testing::InitGoogleTest(&argc, argv);
+  using namespace spillway::test;
+  ::testing::InitGoogleTest(&argc, argv);
   std::uint64_t sets = 1000;
   std::uint64_t seed = 1;
   std::size_t scale = 1;

@@ -13,10 +13,10 @@
 #include "src/runtime/packing.h"
 #include "tests/distributed/world.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -147,4 +147,4 @@ TEST(RankTree, OfNoPointsIsEmpty) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,10 +9,10 @@
 #include "tests/distributed/world.h"
 #include "tests/stream/sinks/dem_runner.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 constexpr PixelGrid kGrid{.west = 0, .north = 600, .resolution = 1, .columns = 700, .rows = 600};
 
@@ -24,7 +24,7 @@ std::vector<Triangle> terrain() {
 /// Every triangle as a part of its own, with its first corner imported, so that each vertex of the
 /// terrain is counted for as many triangles as name it second or third.
 void paint(Dem& dem, const Triangle& triangle) {
-  MeshBlock mesh;
+  MeshStreamBlock mesh;
   mesh.vertices = {LatticePoint(triangle[1]), LatticePoint(triangle[2])};
   mesh.imported = {0};
   mesh.corners = {2, 0, 1};
@@ -54,7 +54,7 @@ struct Painted {
   }
 
   std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   std::optional<Dem> dem;
 };
 
@@ -113,4 +113,4 @@ TEST(SharesOfRanks, CountsVerticesWhereTheyAreNew) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,25 +13,25 @@
 #include "formats/bytes/bytes.h"
 #include "tests/distributed/world.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// An empty folder that all ranks know by the same name; removed when all are done with it.
 class SharedFolder {
  public:
   SharedFolder() {
     std::vector<std::byte> name;
-    if (distributed::world().rank() == 0) {
+    if (test::world().rank() == 0) {
       path_ = ::testing::TempDir() + "rank-output" + std::to_string(::getpid());
       std::filesystem::create_directory(path_);
       const auto bytes = as_bytes_of(path_);
       name.assign(bytes.begin(), bytes.end());
     }
-    distributed::world().broadcast(name, 0);
+    test::world().broadcast(name, 0);
     path_ = as_text(name);
   }
   ~SharedFolder() {
-    distributed::world().barrier();
-    if (distributed::world().rank() == 0) std::filesystem::remove_all(path_);
+    test::world().barrier();
+    if (test::world().rank() == 0) std::filesystem::remove_all(path_);
   }
   SharedFolder(const SharedFolder&) = delete;
   SharedFolder& operator=(const SharedFolder&) = delete;
@@ -50,4 +50,4 @@ class SharedFolder {
   std::string path_;
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

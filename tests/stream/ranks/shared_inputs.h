@@ -13,7 +13,7 @@
 #include "stream/ranks/rank_pipeline.h"
 #include "tests/stream/ranks/shared_folder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Points of the unit cube, the same at all ranks.
 inline std::vector<LatticePoint> points_of_seed(std::size_t count, unsigned seed) {
@@ -34,7 +34,7 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
   std::vector<std::string> paths;
   for (std::size_t f = 0; f < files; ++f) {
     paths.push_back(folder / fmt::format("points{}.{}", f, format));
-    if (distributed::world().rank() != 0) continue;
+    if (test::world().rank() != 0) continue;
     const std::vector<LatticePoint> share(
         points.begin() + static_cast<std::ptrdiff_t>(points.size() * f / files),
         points.begin() + static_cast<std::ptrdiff_t>(points.size() * (f + 1) / files));
@@ -44,7 +44,7 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
     writer->write(share, {});
     writer->finish();
   }
-  distributed::world().barrier();
+  test::world().barrier();
   return paths;
 }
 
@@ -52,14 +52,14 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
 inline std::string write_text(const SharedFolder& folder, const std::vector<LatticePoint>& points,
                               const std::string& name) {
   const std::string path = folder / name;
-  if (distributed::world().rank() == 0) {
+  if (test::world().rank() == 0) {
     std::ofstream file(path);
     for (const LatticePoint& p : points) {
       file << fmt::format("{} {} {}\n", p[0], p[1], p[2]);
     }
   }
-  distributed::world().barrier();
+  test::world().barrier();
   return path;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

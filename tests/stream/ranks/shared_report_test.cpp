@@ -10,10 +10,10 @@
 #include "src/runtime/stage_times.h"
 #include "tests/distributed/world.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 using ::testing::Each;
 using ::testing::Field;
 using ::testing::SizeIs;
@@ -24,7 +24,7 @@ std::uint64_t sum_of_ranks() {
   return ranks * (ranks + 1) / 2;
 }
 
-/// What rank r has made: figures that are multiples of r + 1, so that each sum is told apart. It
+/// What rank r has made: statistics that are multiples of r + 1, so that each sum is told apart. It
 /// has merged at r + 1 levels, and waits the longer the lower its number is.
 RankMesh mesh_of(int rank) {
   const auto n = static_cast<std::uint64_t>(rank + 1);
@@ -36,29 +36,29 @@ RankMesh mesh_of(int rank) {
                  .duplicates = 10,
                  .canonical_hash = 0xABCD};
   mesh.left_out = 4;
-  RunFigures& figures = mesh.figures;
-  figures.mesh.vertices = 1000 * n;
-  figures.left_out = 7 * n;
-  figures.threads = 2;
-  figures.tile_capacity = 5000;
-  figures.leaf_size = 500;
-  figures.tiles = n;
-  figures.leaves = 2 * n;
-  figures.spilled_points = 3 * n;
-  figures.spilled_bytes = 4 * n;
-  figures.final_in_leaves = 5 * n;
-  figures.final_in_tiles = 6 * n;
-  figures.final_by_level.assign(n, 10);
-  figures.retriangulated = 7 * n;
-  figures.border_simplices = 8 * n;
-  figures.border_bytes = 9 * n;
-  figures.divided_points = 10 * n;
-  figures.tile_shapes = {20 * n, 30 * n, 40 * n};
-  figures.read_seconds = 1.0 * static_cast<double>(n);
-  figures.divide_seconds = 10.0 / static_cast<double>(n);
-  figures.triangulate_seconds = rank == 0 ? 5 : 3;
+  RunStatistics& statistics = mesh.statistics;
+  statistics.mesh.vertices = 1000 * n;
+  statistics.left_out = 7 * n;
+  statistics.threads = 2;
+  statistics.tile_points = 5000;
+  statistics.leaf_points = 500;
+  statistics.tiles = n;
+  statistics.leaves = 2 * n;
+  statistics.spilled_points = 3 * n;
+  statistics.spilled_bytes = 4 * n;
+  statistics.final_in_leaves = 5 * n;
+  statistics.final_in_tiles = 6 * n;
+  statistics.final_by_level.assign(n, 10);
+  statistics.retriangulated = 7 * n;
+  statistics.border_simplices = 8 * n;
+  statistics.border_bytes = 9 * n;
+  statistics.divided_points = 10 * n;
+  statistics.tile_shapes = {20 * n, 30 * n, 40 * n};
+  statistics.read_seconds = 1.0 * static_cast<double>(n);
+  statistics.divide_seconds = 10.0 / static_cast<double>(n);
+  statistics.triangulate_seconds = rank == 0 ? 5 : 3;
   for (const char* const stage : kStageNames) {
-    figures.stages.push_back({stage, 0.5 * static_cast<double>(n)});
+    statistics.stages.push_back({stage, 0.5 * static_cast<double>(n)});
   }
   RankMerge merge;
   merge.level = 1;
@@ -140,20 +140,20 @@ TEST(SharedReport, TellsTheFirstRankWhatEachHasDone) {
   }
   ASSERT_THAT(sums.ranks, SizeIs(static_cast<std::size_t>(world().size())));
   for (int rank = 0; rank < world().size(); ++rank) {
-    const RankFigures& told = sums.ranks[static_cast<std::size_t>(rank)];
+    const RankStatistics& told = sums.ranks[static_cast<std::size_t>(rank)];
     const RankMesh own = mesh_of(rank);
-    EXPECT_EQ(told.run.mesh, own.figures.mesh);
-    EXPECT_EQ(told.run.left_out, own.figures.left_out);
+    EXPECT_EQ(told.run.mesh, own.statistics.mesh);
+    EXPECT_EQ(told.run.left_out, own.statistics.left_out);
     EXPECT_EQ(told.run.threads, 2U);
-    EXPECT_EQ(told.run.tile_capacity, 5000U);
-    EXPECT_EQ(told.run.leaf_size, 500U);
-    EXPECT_EQ(told.run.tiles, own.figures.tiles);
-    EXPECT_EQ(told.run.divided_points, own.figures.divided_points);
-    EXPECT_EQ(told.run.final_by_level, own.figures.final_by_level);
-    EXPECT_EQ(told.run.read_seconds, own.figures.read_seconds);
-    EXPECT_EQ(told.run.triangulate_seconds, own.figures.triangulate_seconds);
+    EXPECT_EQ(told.run.tile_points, 5000U);
+    EXPECT_EQ(told.run.leaf_points, 500U);
+    EXPECT_EQ(told.run.tiles, own.statistics.tiles);
+    EXPECT_EQ(told.run.divided_points, own.statistics.divided_points);
+    EXPECT_EQ(told.run.final_by_level, own.statistics.final_by_level);
+    EXPECT_EQ(told.run.read_seconds, own.statistics.read_seconds);
+    EXPECT_EQ(told.run.triangulate_seconds, own.statistics.triangulate_seconds);
     EXPECT_THAT(told.run.stages,
-                Each(Field(&StageSeconds::seconds, own.figures.stages[0].seconds)));
+                Each(Field(&StageSeconds::seconds, own.statistics.stages[0].seconds)));
     EXPECT_GT(told.peak_memory, 0U);
     EXPECT_EQ(told.points_sent, own.exchanged_points);
     EXPECT_EQ(told.point_bytes_sent, own.exchanged_bytes);
@@ -165,4 +165,4 @@ TEST(SharedReport, TellsTheFirstRankWhatEachHasDone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -13,10 +13,10 @@
 #include "tests/stream/ranks/shared_folder.h"
 #include "tests/stream/ranks/small_rank_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -101,8 +101,8 @@ TEST(StreamSections, OneAfterTheOtherAreTheStream) {
     }
   }
   const auto reader = open_mesh_stream_reader(disk(), folder / "a.spm");
-  std::vector<MeshBlock> blocks;
-  for (MeshBlock block; reader->read(block);) blocks.push_back(block);
+  std::vector<MeshStreamBlock> blocks;
+  for (MeshStreamBlock block; reader->read(block);) blocks.push_back(block);
   EXPECT_EQ(reader->totals(), totals);
   ASSERT_EQ(blocks.size(), sizes.size());
   const auto last = 3 * static_cast<std::uint64_t>(world().size() - 1);
@@ -111,4 +111,4 @@ TEST(StreamSections, OneAfterTheOtherAreTheStream) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

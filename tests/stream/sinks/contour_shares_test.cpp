@@ -16,7 +16,7 @@
 
 #include "formats/disk/scratch_folder.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Line = std::pair<double, std::vector<Point<2>>>;
@@ -54,7 +54,7 @@ class Process {
             *scratch_) {}
 
   void take(const std::array<std::uint64_t, 3>& triangle) {
-    MeshBlock mesh;
+    MeshStreamBlock mesh;
     std::vector<LatticePoint> vertices;
     for (const std::uint64_t v : triangle) {
       mesh.corners.push_back(static_cast<std::uint32_t>(mesh.imported.size()));
@@ -78,7 +78,7 @@ class Process {
   }
 
  private:
-  std::unique_ptr<ScratchFolder> scratch_ = make_scratch_folder(testing::TempDir(), std::nullopt);
+  std::unique_ptr<ScratchFolder> scratch_ = make_scratch_folder(::testing::TempDir(), std::nullopt);
   LineStore store_{*scratch_};
   std::vector<Line> lines_;
   ContourWriter writer_;
@@ -142,7 +142,7 @@ TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheLinesOfOneProcess) {
           [&](std::span<const Point<2>> points, double height) {
             processes[0].add(points, height);
           },
-          [&](const ContourFigures&) { ++figures_taken; });
+          [&](const ContourStatistics&) { ++figures_taken; });
       EXPECT_EQ(processes[0].finish(), expected) << count << " processes";
       EXPECT_EQ(figures_taken, count - 1);
     }
@@ -157,7 +157,7 @@ TEST(ContourShares, AreNumberedAsTheWholeMesh) {
   Process below;
   Process above;
   const auto take_strip = [](Process& process, std::uint64_t first, std::uint64_t last) {
-    MeshBlock block;
+    MeshStreamBlock block;
     for (std::uint64_t v = first; v < last; ++v) block.vertices.push_back(vertex(v));
     for (const auto& triangle : triangles()) {
       if (triangle[0] < first || *std::ranges::max_element(triangle) >= last) continue;
@@ -181,11 +181,11 @@ TEST(ContourShares, AreNumberedAsTheWholeMesh) {
   take_contours(
       below.writer(), others,
       [&](std::span<const Point<2>> points, double height) { below.add(points, height); },
-      [&](const ContourFigures& figures) { lowest = std::min(lowest, figures.lowest); });
+      [&](const ContourStatistics& statistics) { lowest = std::min(lowest, statistics.lowest); });
   EXPECT_EQ(below.finish(), lines_of_one());
   EXPECT_EQ(lowest, std::min(below.writer().lowest(), above.writer().lowest()));
   EXPECT_LT(lowest, -5);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "src/terrain/isolines.h"
 #include "stream/sinks/contour_writer.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Line = std::vector<Point<2>>;
@@ -29,7 +29,7 @@ struct Contours {
 template <typename Height>
 Contours contours_of_grid(int n, const Height& height, double interval, std::size_t block_size,
                           unsigned seed, std::uint64_t memory = 1 << 20) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   Contours result;
   ContourWriter writer(
       {.levels = Levels::every(interval, 0), .lattice = {}, .memory = memory},
@@ -38,7 +38,7 @@ Contours contours_of_grid(int n, const Height& height, double interval, std::siz
       },
       *scratch);
   const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
-  MeshBlock vertices;
+  MeshStreamBlock vertices;
   for (int y = 0; y <= n; ++y) {
     for (int x = 0; x <= n; ++x) vertices.vertices.push_back({1.0 * x, 1.0 * y, height(x, y)});
   }
@@ -57,7 +57,7 @@ Contours contours_of_grid(int n, const Height& height, double interval, std::siz
     for (const std::uint32_t v : triangle) ++uses[v];
   }
   for (std::size_t begin = 0; begin < triangles.size(); begin += block_size) {
-    MeshBlock block;
+    MeshStreamBlock block;
     std::map<std::uint32_t, std::uint32_t> short_number;
     for (std::size_t t = begin; t < std::min(triangles.size(), begin + block_size); ++t) {
       for (const std::uint32_t v : triangles[t]) {
@@ -101,7 +101,7 @@ TEST(Contours, OfAConeAreClosedRingsThatTurnLeftAroundTheSummit) {
     EXPECT_NEAR(area(line), M_PI * radius * radius, 0.1 * area(line) + 0.2) << height;
     EXPECT_EQ(line.front(), *std::min_element(line.begin(), line.end()));
   }
-  EXPECT_THAT(closed, testing::IsSupersetOf({3.0, 6.0, 9.0, 12.0, 15.0, 18.0}));
+  EXPECT_THAT(closed, ::testing::IsSupersetOf({3.0, 6.0, 9.0, 12.0, 15.0, 18.0}));
 }
 
 TEST(Contours, DoNotDependOnTheOrderOfTrianglesOrBlocks) {
@@ -208,7 +208,7 @@ TEST(Levels, CountALevelOnlyAboveTheLowerEnd) {
 TEST(Levels, RefuseAnIntervalThatHeightsCannotTellApart) {
   for (const double interval : {1e-300, 1e-22, 1e-9}) {
     const Levels levels = Levels::every(interval, 1e9);
-    EXPECT_THROW(static_cast<void>(levels.between(1e9, 1e9)), Error) << interval;
+    EXPECT_THROW(static_cast<void>(levels.between(1e9, 1e9)), Failure) << interval;
   }
 }
 
@@ -222,8 +222,8 @@ TEST(Levels, RefuseWhatMakesNoSense) {
   EXPECT_THROW(Levels::every(-1, 0), InvalidArgument);
   EXPECT_THROW(Levels::every(NAN, 0), InvalidArgument);
   EXPECT_THROW(Levels::of_list({}), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Error);
+  EXPECT_THROW(static_cast<void>(Levels::every(1e-300, 0).between(5, 6)), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

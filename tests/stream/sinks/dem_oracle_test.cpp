@@ -16,14 +16,14 @@
 
 #include "tests/stream/sinks/dem_runner.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::kAllProducts;
-using testing::Random;
-using testing::raster_of;
-using testing::Rastered;
-using testing::triangles_of;
+using test::kAllProducts;
+using test::Random;
+using test::raster_of;
+using test::Rastered;
+using test::triangles_of;
 
 /// x and y in steps of 1 / kSteps, so that vertices and centres are whole numbers.
 constexpr int kSteps = 8;
@@ -161,10 +161,10 @@ std::vector<Triangle> triangles_of_cloud(const Cloud& cloud) {
 }
 
 /// Centres on vertices and edges, between them, and beside the hull.
-std::vector<DemOptions> rasters() {
-  std::vector<DemOptions> rasters;
+std::vector<DemSinkOptions> rasters() {
+  std::vector<DemSinkOptions> rasters;
   for (const auto& [resolution, west] : {std::pair{1.0, -1.5}, {0.5, -0.25}, {0.25, 0.0}}) {
-    DemOptions options = kAllProducts;
+    DemSinkOptions options = kAllProducts;
     options.grid = {.resolution = resolution,
                     .bounds = Box<2>{{west, west}, {west + 18, west + 18}}};
     rasters.push_back(options);
@@ -190,8 +190,8 @@ void expect_close(float pixel, long double value) {
 }
 
 /// What the pixel at a place must hold, product by product.
-void expect_pixel(const std::vector<Facet>& facets, const Steps& place, const DemOptions& options,
-                  const std::array<float, 4>& pixel) {
+void expect_pixel(const std::vector<Facet>& facets, const Steps& place,
+                  const DemSinkOptions& options, const std::array<float, 4>& pixel) {
   std::vector<const Facet*> around;
   const Facet* owner = nullptr;
   for (const Facet& facet : facets) {
@@ -231,7 +231,7 @@ TEST(DemOracle, EveryPixelIsThatOfTheTriangleThatOwnsItsCentre) {
   for (const Cloud& cloud : clouds()) {
     std::vector<Facet> facets;
     for (const Triangle& triangle : triangles_of_cloud(cloud)) facets.emplace_back(triangle);
-    for (const DemOptions& options : rasters()) {
+    for (const DemSinkOptions& options : rasters()) {
       const Rastered dem = raster_of(cloud, options);
       std::vector<float> density(dem.bands[4].size());
       for (const Point<3>& p : cloud) {
@@ -257,7 +257,7 @@ TEST(DemOracle, OrdersThreadsAndTilesChangeNoBit) {
   std::mt19937 random(7);
   for (Cloud cloud : clouds()) {
     auto triangles = triangles_of_cloud(cloud);
-    for (const DemOptions& options : rasters()) {
+    for (const DemSinkOptions& options : rasters()) {
       const Rastered one = raster_of(cloud, options);
       const auto of_points = bits(one, 5);
       const auto of_mesh = bits(one, 4);
@@ -273,7 +273,7 @@ TEST(DemOracle, OrdersThreadsAndTilesChangeNoBit) {
           std::rotate(triangle.begin(), triangle.begin() + random() % 3, triangle.end());
           if (random() % 2 == 0) std::swap(triangle[0], triangle[1]);
         }
-        DemOptions painted = options;
+        DemSinkOptions painted = options;
         painted.threads = threads;
         ASSERT_EQ(bits(raster_of(triangles, one.grid, painted, threads), 4), of_mesh) << threads;
       }
@@ -286,7 +286,7 @@ TEST(DemOracle, PixelsOnTheDiskChangeNoBit) {
   const Cloud cloud = clouds()[6];
   auto triangles = triangles_of_cloud(cloud);
   const PixelGrid grid{-1.0 / 128, 16 + 1.0 / 128, 1.0 / 64, 1025, 1025};  // 25 tiles
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   const auto expected = bits(raster_of(triangles, grid, options), 4);
   options.memory = RasterStore::least_memory(5, 1) + (1U << 20);
   for (int turn = 0; turn < 4; ++turn) {
@@ -304,7 +304,7 @@ TEST(DemOracle, ATriangleThatFallsDueNorthWinsOverItsNeighbours) {
   const Point<3> shared{4, 8, 2};
   std::vector<Triangle> triangles = {{top, shared, {-6, 8, 2}}, {top, {9, 1, 0}, shared}};
   const PixelGrid grid{-6.5, 8.5, 1, 16, 9};
-  DemOptions options{.products = {DemProduct::kAspect}};
+  DemSinkOptions options{.products = {DemProduct::kAspect}};
   for (int turn = 0; turn < 2; ++turn) {
     const Rastered dem = raster_of(triangles, grid, options);
     EXPECT_NEAR(dem.bands[0][6 * 16 + 7], 66.0375137, 1e-5);  // at (1, 2)
@@ -314,4 +314,4 @@ TEST(DemOracle, ATriangleThatFallsDueNorthWinsOverItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "tests/stream/stream_runner.h"
 #include "tests/terrain/terrain_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 inline constexpr std::uint64_t kMemory = std::uint64_t{64} << 20;
 
@@ -52,7 +52,7 @@ struct Rastered {
   std::uint64_t closed = 0;
 };
 
-inline Rastered finished(Dem& dem, const DemOptions& options) {
+inline Rastered finished(Dem& dem, const DemSinkOptions& options) {
   KeepingRaster raster(dem.grid(), options.products.size());
   dem.write(raster, [](std::uint64_t) {});
   return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes(),
@@ -60,12 +60,12 @@ inline Rastered finished(Dem& dem, const DemOptions& options) {
 }
 
 /// Points through the whole pipeline.
-inline Rastered raster_of(const std::vector<Point<3>>& points, DemOptions options,
+inline Rastered raster_of(const std::vector<Point<3>>& points, DemSinkOptions options,
                           EngineOptions stream = {}) {
   if (options.memory == 0) options.memory = kMemory;
   options.threads = stream.threads;
   const std::string path = write_points<3>(points);
-  PointSource source(disk(), {path}, {.dimension = 2});
+  JoinedInputs source(disk(), {path}, {.dimension = 2});
   QuietSetup setup(std::move(stream), kMemory);
   Dem dem(options, source.lattice(), *setup.scratch);
   class Extents final : public RunSink {
@@ -86,7 +86,7 @@ inline Rastered raster_of(const std::vector<Point<3>>& points, DemOptions option
 
 /// Triangles as they are, without any pipeline; so many at a time.
 inline Rastered raster_of(const std::vector<Triangle>& triangles, const PixelGrid& grid,
-                          DemOptions options, std::size_t at_a_time = 1 << 20) {
+                          DemSinkOptions options, std::size_t at_a_time = 1 << 20) {
   if (options.memory == 0) options.memory = kMemory;
   options.grid.given = grid;
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
@@ -115,8 +115,8 @@ inline std::vector<Point<3>> with_heights(const std::vector<Point<2>>& points,
   return result;
 }
 
-inline const DemOptions kAllProducts{.products = {DemProduct::kHeight, DemProduct::kSlope,
-                                                  DemProduct::kAspect, DemProduct::kHillshade,
-                                                  DemProduct::kDensity}};
+inline const DemSinkOptions kAllProducts{.products = {DemProduct::kHeight, DemProduct::kSlope,
+                                                      DemProduct::kAspect, DemProduct::kHillshade,
+                                                      DemProduct::kDensity}};
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

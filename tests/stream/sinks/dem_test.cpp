@@ -15,24 +15,23 @@
 #include "src/geometry/predicates.h"
 #include "tests/stream/sinks/dem_runner.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::edges_touched;
-using testing::kAllProducts;
-using testing::kMemory;
-using testing::raster_of;
-using testing::Rastered;
-using testing::square_points;
-using testing::triangles_of;
-using testing::with_heights;
+using test::edges_touched;
+using test::kAllProducts;
+using test::raster_of;
+using test::Rastered;
+using test::square_points;
+using test::triangles_of;
+using test::with_heights;
 
 double rough(double x, double y) { return 50 * std::sin(x) * std::cos(2 * y) + x; }
 
 TEST(Dem, EveryPixelIsWhatThePlaneOfItsTriangleSays) {
   for (const bool whole : {false, true}) {
     const auto points = square_points(300, 40, whole, 11);
-    DemOptions options;
+    DemSinkOptions options;
     options.grid = {.resolution = 0.5};
     const Rastered dem = raster_of(with_heights(points, rough), options);
     const auto triangles = triangles_of(points, rough);
@@ -71,7 +70,7 @@ TEST(Dem, TilesThreadsAndLeavesDoNotMatter) {
   for (const bool whole : {false, true}) {
     // More than one tile of pixels each way, many of them on vertices and edges if `whole`.
     const auto points = with_heights(square_points(20'000, 300, whole, 3), rough);
-    DemOptions options = kAllProducts;
+    DemSinkOptions options = kAllProducts;
     options.grid = {.resolution = 0.5, .bounds = Box<2>{{-0.25, -0.25}, {300.25, 300.25}}};
     const Rastered one = raster_of(points, options);
     for (const EngineOptions& stream :
@@ -94,8 +93,8 @@ TEST(Dem, TilesThatAreClosedDoNotMatter) {
   for (const bool whole : {false, true}) {
     const auto points = with_heights(square_points(20'000, 700, whole, 5),
                                      [](double x, double y) { return x < 300 ? 1 : rough(x, y); });
-    DemOptions options{.products = {DemProduct::kHeight, DemProduct::kSlope, DemProduct::kAspect,
-                                    DemProduct::kHillshade}};
+    DemSinkOptions options{.products = {DemProduct::kHeight, DemProduct::kSlope,
+                                        DemProduct::kAspect, DemProduct::kHillshade}};
     options.grid = {.resolution = 0.5, .bounds = Box<2>{{20, -50}, {700, 650}}};
     for (const double max_edge : {1000.0, 22.0}) {
       EngineOptions stream{.asked = {.max_edge = max_edge}};
@@ -122,7 +121,7 @@ TEST(Dem, TilesThatAreClosedDoNotMatter) {
 
 /// Vertices of a pixel may come after all of the triangles at its centre.
 TEST(Dem, TilesWithDensitiesAreNotClosed) {
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   options.grid = {.resolution = 0.5, .bounds = Box<2>{{10, 10}, {290, 290}}};
   options.closes_tiles = true;
   const auto points = with_heights(square_points(20'000, 300, false, 6), rough);
@@ -145,7 +144,7 @@ TEST(Dem, TheOrderOfTrianglesDoesNotMatter) {
 TEST(Dem, TheHullBelongsToTheRaster) {
   std::vector<Point<2>> points;
   for (int i = 0; i < 25; ++i) points.push_back({i % 5 * 1.0, i / 5 * 1.0});
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   options.grid = {.resolution = 1, .bounds = Box<2>{{-0.5, -0.5}, {4.5, 4.5}}};
   const Rastered dem =
       raster_of(with_heights(points, [](double x, double y) { return x + y; }), options);
@@ -159,7 +158,7 @@ TEST(Dem, TheHullBelongsToTheRaster) {
 }
 
 TEST(Dem, LevelGroundHasNoAspect) {
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   options.grid = {.resolution = 0.5};
   const Rastered dem = raster_of(
       with_heights(square_points(50, 10, true, 2), [](double, double) { return 7; }), options);
@@ -173,7 +172,7 @@ TEST(Dem, LevelGroundHasNoAspect) {
 }
 
 TEST(Dem, DensityCountsEveryVertexOnce) {
-  DemOptions options{.products = {DemProduct::kDensity}};
+  DemSinkOptions options{.products = {DemProduct::kDensity}};
   options.grid = {.resolution = 3};
   const auto points = with_heights(square_points(5000, 90, false, 4), rough);
   const Rastered dem = raster_of(points, options, {.asked = {.tile_points = 700}, .threads = 2});
@@ -186,7 +185,7 @@ TEST(Dem, LongEdgesLeaveNoData) {
   // Two patches far apart.
   auto points = square_points(400, 10, false, 6);
   for (std::size_t i = 0; i < points.size(); i += 2) points[i][0] += 100;
-  DemOptions options;
+  DemSinkOptions options;
   options.grid = {.resolution = 1, .bounds = Box<2>{{0, 0}, {110, 10}}};
   const Rastered dem =
       raster_of(with_heights(points, rough), options, {.asked = {.max_edge = 20.0}});
@@ -205,7 +204,7 @@ bool gdal_takes_for_nodata(float value, float nodata) {
 }
 
 TEST(Dem, WhatWouldBeTakenForNodataIsMovedByAFewStepsOfAFloat) {
-  testing::Random random(3);
+  test::Random random(3);
   std::vector<float> values = {7, -9999, 0.1F, 1e-44F, -1e-40F, 1, -1, 65536, 1e30F};
   for (int i = 0; i < 200; ++i) values.push_back(static_cast<float>(random.uniform(-1e4, 1e4)));
   const PixelGrid grid{0, 8, 1, 8, 8};
@@ -213,7 +212,7 @@ TEST(Dem, WhatWouldBeTakenForNodataIsMovedByAFewStepsOfAFloat) {
     for (const float height :
          {nodata, std::nextafter(nodata, -INFINITY), std::nextafter(nodata, INFINITY)}) {
       const double z = height;
-      DemOptions options{.nodata = nodata};
+      DemSinkOptions options{.nodata = nodata};
       const Rastered dem =
           raster_of({Triangle{{{-9, -9, z}, {99, -9, z}, {-9, 99, z}}}}, grid, options);
       EXPECT_EQ(dem.with_data, 64U);
@@ -226,7 +225,7 @@ TEST(Dem, WhatWouldBeTakenForNodataIsMovedByAFewStepsOfAFloat) {
 }
 
 TEST(Dem, ZerosOfAllProductsAreToldFromANodataOfZero) {
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   options.light.altitude = 0;
   options.nodata = 0;
   const Rastered dem = raster_of({Triangle{{{-9, -9, -0.0}, {99, -9, 0}, {-9, 99, -0.0}}}},
@@ -238,7 +237,7 @@ TEST(Dem, ZerosOfAllProductsAreToldFromANodataOfZero) {
 }
 
 TEST(Dem, ZerosHaveNoSign) {
-  DemOptions options = kAllProducts;
+  DemSinkOptions options = kAllProducts;
   options.light.altitude = 0;
   const Rastered dem = raster_of({Triangle{{{-9, -9, -0.0}, {99, -9, 0}, {-9, 99, -0.0}}}},
                                  {0, 8, 1, 8, 8}, options);
@@ -257,12 +256,12 @@ TEST(Dem, NodataOfTheLargestFloatLeavesHeightsFinite) {
 
 TEST(Dem, PixelsAreCountedOnceAndNoneBesideTheRaster) {
   for (const auto& [columns, rows] : {std::pair{200U, 200U}, {256U, 256U}, {300U, 520U}}) {
-    DemOptions options = kAllProducts;
+    DemSinkOptions options = kAllProducts;
     options.memory = kMemory;
     const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
     Dem dem(options, std::nullopt, *scratch);
     dem.begin(PixelGrid{0, 0, 1, columns, rows});
-    testing::KeepingRaster raster(dem.grid(), options.products.size());
+    test::KeepingRaster raster(dem.grid(), options.products.size());
     std::vector<std::uint64_t> counts;
     dem.write(raster, [&](std::uint64_t pixels) { counts.push_back(pixels); });
     EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));
@@ -272,7 +271,8 @@ TEST(Dem, PixelsAreCountedOnceAndNoneBesideTheRaster) {
 
 TEST(Dem, PixelsThatDoNotFitIntoMemoryGoToTheDiskAndComeBack) {
   const auto points = with_heights(square_points(3000, 1500, false, 5), rough);
-  DemOptions options{.products = {DemProduct::kHeight, DemProduct::kSlope, DemProduct::kDensity}};
+  DemSinkOptions options{
+      .products = {DemProduct::kHeight, DemProduct::kSlope, DemProduct::kDensity}};
   options.grid = {.resolution = 1};
   const Rastered one = raster_of(points, options);
   EXPECT_EQ(one.spilled, 0U);
@@ -359,8 +359,8 @@ TEST(RasterStore, AFullDiskIsAnError) {
           std::fill_n(pixels, RasterStore::kTilePixels, static_cast<float>(tile));
         }
       },
-      Error);
+      Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -17,7 +17,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -30,7 +30,7 @@ constexpr std::uint64_t kMuch = 1 << 20;  ///< bytes
 
 /// A joiner, and the lines that it has given out.
 struct Joined {
-  std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   Lines lines;
   LineJoiner joiner;
 
@@ -228,10 +228,10 @@ TEST(LineJoiner, RefusesTrianglesThatDoNotFitTogether) {
   Joined joined;
   const IsoSegment segment{crossing(1), crossing(2), {0, 0}, {1, 1}};
   joined.joiner.add(segment);
-  EXPECT_THROW(joined.joiner.add(segment), Error);
+  EXPECT_THROW(joined.joiner.add(segment), Failure);
   const LineJoiner::OpenLine part{crossing(1), crossing(3), {{0, 0}, {2, 2}}};
-  EXPECT_THROW(joined.joiner.add(LineJoiner::OpenLine(part)), Error);
+  EXPECT_THROW(joined.joiner.add(LineJoiner::OpenLine(part)), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -20,7 +20,7 @@
 #include "src/error.h"
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -378,7 +378,7 @@ TEST_F(RasterStoreTest, RefusesADamagedPartOfAnotherStore) {
     std::vector<float> pixels;
     store.take(0, pixels, parts);
     ADD_FAILURE() << "the damage was not seen";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), StartsWith("pixels from another rank")) << error.what();
   }
 }
@@ -401,4 +401,4 @@ TEST(RasterStore, NeedsRoomForEveryHandAndSome) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

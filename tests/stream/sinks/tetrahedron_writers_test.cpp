@@ -12,7 +12,7 @@
 
 #include "tests/stream/checker/mesh_streaming.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -39,8 +39,8 @@ Mesh cubes(std::uint64_t count) {
 }
 
 void write(TetrahedronWriter& writer, const Mesh& mesh, std::size_t simplices_in_block) {
-  testing::StreamInMemory stream = testing::stream_of(mesh, simplices_in_block);
-  for (MeshBlock& block : stream.blocks) writer.write(std::move(block));
+  test::StreamInMemory stream = test::stream_of(mesh, simplices_in_block);
+  for (MeshStreamBlock& block : stream.blocks) writer.write(std::move(block));
   writer.finish(stream.stream_totals);
 }
 
@@ -114,7 +114,7 @@ TEST(HullWriter, LeavesOutTetrahedraWithTooLongAnEdge) {
 }
 
 TEST(HullWriter, MeasuresEdgesInOutputUnits) {
-  const Lattice lattice{{10, 10, 10}, {100, 0, 0}};
+  const IntegerLattice lattice{{10, 10, 10}, {100, 0, 0}};
   HullWriter hull(lattice, 3.0);
   write(hull, cubes(1), 10);
   EXPECT_EQ(hull.left_out(), 6U);
@@ -138,7 +138,7 @@ TEST(SliceWriter, CutsCoverTheSectionOnce) {
 }
 
 TEST(SliceWriter, TellsTheSizeOfACell) {
-  SliceWriter slice(Lattice{{2, 2, 2}, {0, 0, 0}}, std::nullopt, {.axis = 0, .value = 1});
+  SliceWriter slice(IntegerLattice{{2, 2, 2}, {0, 0, 0}}, std::nullopt, {.axis = 0, .value = 1});
   write(slice, cubes(1), 1);
   ASSERT_FALSE(slice.cuts().empty());
   for (const CellCut& cell : slice.cuts()) {
@@ -147,4 +147,4 @@ TEST(SliceWriter, TellsTheSizeOfACell) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

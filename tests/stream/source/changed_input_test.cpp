@@ -12,7 +12,7 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -36,7 +36,7 @@ PointHeader header() {
   header.version = "1.2";
   header.point_format = 3;
   header.count = 1000;
-  header.lattice = Lattice{};
+  header.lattice = IntegerLattice{};
   header.extent = Box<3>{{0, 0, 0}, {10, 10, 10}};
   header.crs = std::string("EPSG:25832");
   header.regions = {{{{0, 0, 0}, {5, 10, 10}}, 400}, {{{5, 0, 0}, {10, 10, 10}}, 600}};
@@ -102,7 +102,7 @@ TEST(RefuseChangedInput, IsRefusedWhereItsPointsLieElsewhere) {
 }
 
 TEST(RefuseChangedInput, OfAnotherSizeIsRefused) {
-  const std::string path = testing::TempDir() + "changed_input_test";
+  const std::string path = ::testing::TempDir() + "changed_input_test";
   std::ofstream(path) << "twelve bytes";
   EXPECT_EQ(bytes_of_file(path), 12U);
   const auto refused = [&](std::optional<std::uint64_t> bytes) {
@@ -116,8 +116,8 @@ TEST(RefuseChangedInput, OfAnotherSizeIsRefused) {
   EXPECT_THAT(refused(13), HasSubstr("it has 12 bytes, not 13"));
   std::filesystem::remove(path);
   EXPECT_EQ(bytes_of_file(path), std::nullopt);
-  EXPECT_EQ(bytes_of_file(testing::TempDir()), std::nullopt) << "a folder";
+  EXPECT_EQ(bytes_of_file(::testing::TempDir()), std::nullopt) << "a folder";
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,15 +10,15 @@
 #include <limits>
 #include <random>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-Lattice lattice(double scale, double offset = 0) {
+IntegerLattice lattice(double scale, double offset = 0) {
   return {{scale, scale, scale}, {offset, offset, offset}};
 }
 
 TEST(CommonLattice, OfOneInputIsItsOwn) {
-  const Lattice own{{0.01, 0.01, 0.001}, {500000, 4100000.5, -3}};
+  const IntegerLattice own{{0.01, 0.01, 0.001}, {500000, 4100000.5, -3}};
   const auto common = find_common_lattice(std::vector{own}, 2);
   ASSERT_TRUE(common);
   EXPECT_EQ(common->lattice, own);
@@ -27,8 +27,8 @@ TEST(CommonLattice, OfOneInputIsItsOwn) {
 }
 
 TEST(CommonLattice, OffsetsMayDifferByWholeSteps) {
-  const std::vector<Lattice> lattices = {{{0.01, 0.01, 0.01}, {100, 200, 0}},
-                                         {{0.01, 0.01, 0.01}, {100.5, 100, 0.07}}};
+  const std::vector<IntegerLattice> lattices = {{{0.01, 0.01, 0.01}, {100, 200, 0}},
+                                                {{0.01, 0.01, 0.01}, {100.5, 100, 0.07}}};
   const auto common = find_common_lattice(lattices, 3);
   ASSERT_TRUE(common);
   EXPECT_EQ(common->lattice.offset, (std::array<double, 3>{100, 100, 0}));
@@ -56,7 +56,7 @@ TEST(CommonLattice, TakesTheLargestPartOfAllScalesWhereNoneIsAMultiple) {
 }
 
 TEST(CommonLattice, JoinsTheAxesOfOneInput) {
-  const Lattice flat{{0.01, 0.01, 1e-5}, {0, 0, 0}};
+  const IntegerLattice flat{{0.01, 0.01, 1e-5}, {0, 0, 0}};
   const auto space = find_common_lattice(std::vector{flat}, 3);
   ASSERT_TRUE(space);
   EXPECT_EQ(space->lattice.scale[0], 1e-5);
@@ -67,8 +67,8 @@ TEST(CommonLattice, JoinsTheAxesOfOneInput) {
 }
 
 TEST(CommonLattice, LeavesOutHeightsThatDoNotFit) {
-  const std::vector<Lattice> lattices = {{{0.01, 0.01, 0.01}, {0, 0, 0}},
-                                         {{0.01, 0.01, 0.01}, {0, 0, -0.0033}}};
+  const std::vector<IntegerLattice> lattices = {{{0.01, 0.01, 0.01}, {0, 0, 0}},
+                                                {{0.01, 0.01, 0.01}, {0, 0, -0.0033}}};
   const auto common = find_common_lattice(lattices, 2);
   ASSERT_TRUE(common);
   EXPECT_FALSE(common->heights);
@@ -93,10 +93,10 @@ TEST(CommonLattice, IsRefusedWhereIntegersWouldNotFit) {
 }
 
 TEST(CommonLattice, NegativeScalesMirrorTheIntegers) {
-  const Lattice mirrored{{0.01, -0.01, -0.01}, {100, 200, 7}};
+  const IntegerLattice mirrored{{0.01, -0.01, -0.01}, {100, 200, 7}};
   const auto own = find_common_lattice(std::vector{mirrored}, 3);
   ASSERT_TRUE(own);
-  EXPECT_EQ(own->lattice, (Lattice{{0.01, 0.01, 0.01}, {100, 200, 7}}));
+  EXPECT_EQ(own->lattice, (IntegerLattice{{0.01, 0.01, 0.01}, {100, 200, 7}}));
   EXPECT_EQ(own->maps[0].factor, (std::array<double, 3>{1, -1, -1}));
   EXPECT_EQ(own->lattice.to_world(1, own->maps[0].map(1, 12345)), mirrored.to_world(1, 12345));
   const auto both = find_common_lattice(std::vector{lattice(-0.02, 1), lattice(0.01)}, 2);
@@ -136,23 +136,23 @@ TEST(CommonLattice, LargestIntegerIsThatOfTheFormatOrTheExtent) {
 }
 
 TEST(CommonLattice, DoesNotDependOnTheOrderOfTheInputs) {
-  std::vector<Lattice> lattices = {lattice(0.25, 10), lattice(0.1, 4), lattice(0.01, 7.02)};
+  std::vector<IntegerLattice> lattices = {lattice(0.25, 10), lattice(0.1, 4), lattice(0.01, 7.02)};
   std::sort(lattices.begin(), lattices.end(),
-            [](const Lattice& a, const Lattice& b) { return a.scale < b.scale; });
-  const Lattice first = find_common_lattice(lattices, 3)->lattice;
+            [](const IntegerLattice& a, const IntegerLattice& b) { return a.scale < b.scale; });
+  const IntegerLattice first = find_common_lattice(lattices, 3)->lattice;
   do {
     EXPECT_EQ(find_common_lattice(lattices, 3)->lattice, first);
-  } while (
-      std::next_permutation(lattices.begin(), lattices.end(),
-                            [](const Lattice& a, const Lattice& b) { return a.scale < b.scale; }));
+  } while (std::next_permutation(
+      lattices.begin(), lattices.end(),
+      [](const IntegerLattice& a, const IntegerLattice& b) { return a.scale < b.scale; }));
 }
 
 /// Both coordinates are decimal numbers that the doubles stand for; they may differ in their last
 /// place, as both are rounded.
 TEST(CommonLattice, OutputCoordinatesAreThoseOfTheInputUpToTheLastPlace) {
   std::mt19937 random(11);
-  const std::vector<Lattice> lattices = {lattice(0.01, 500000), lattice(0.001, 4100000),
-                                         lattice(0.25, 636001.75), lattice(0.01, 0)};
+  const std::vector<IntegerLattice> lattices = {lattice(0.01, 500000), lattice(0.001, 4100000),
+                                                lattice(0.25, 636001.75), lattice(0.01, 0)};
   const auto common = find_common_lattice(lattices, 3);
   ASSERT_TRUE(common);
   for (std::size_t i = 0; i < lattices.size(); ++i) {
@@ -168,4 +168,4 @@ TEST(CommonLattice, OutputCoordinatesAreThoseOfTheInputUpToTheLastPlace) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -12,7 +12,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(Condition, SaysWhereItCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

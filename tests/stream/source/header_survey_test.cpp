@@ -10,13 +10,13 @@
 #include "tests/formats/inputs/temporary_files.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::FaultyFileSystem;
+using test::LasFile;
 using ::testing::AllOf;
-using testing::FaultyFileSystem;
 using ::testing::HasSubstr;
-using testing::LasFile;
 using ::testing::Not;
 
 class HeaderSurveyTest : public ::testing::Test {
@@ -35,7 +35,7 @@ class HeaderSurveyTest : public ::testing::Test {
   std::string error_of(const std::vector<std::string>& paths) {
     try {
       survey(paths);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "no error";
@@ -99,7 +99,7 @@ TEST_F(HeaderSurveyTest, InputsWithoutHeightsAreRefusedInSpaceAndToldInThePlane)
 }
 
 TEST_F(HeaderSurveyTest, WhatOpensJustOnceKeepsItsReader) {
-  testing::TemporaryFiles on_disk;
+  test::TemporaryFiles on_disk;
   const std::string path = on_disk.put("a.las", LasFile().bytes());
   options_.digests = true;
   const HeaderSurvey all = survey_headers(disk(), {path}, options_);
@@ -116,7 +116,7 @@ TEST_F(HeaderSurveyTest, WhatOpensJustOnceKeepsItsReader) {
 }
 
 TEST_F(HeaderSurveyTest, EveryNthRecordIsToldInPiecesOnlyWhereTheCountIsKnown) {
-  testing::TemporaryFiles on_disk;
+  test::TemporaryFiles on_disk;
   const std::vector<std::string> paths = {on_disk.put("a.las", LasFile().bytes()),
                                           on_disk.put("b.txt", "0 0 0\n1 0 0\n")};
   EXPECT_EQ(survey_headers(disk(), paths, options_).facts.inputs[1].pieces, 1U);
@@ -127,4 +127,4 @@ TEST_F(HeaderSurveyTest, EveryNthRecordIsToldInPiecesOnlyWhereTheCountIsKnown) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -52,7 +52,7 @@ TEST_F(InputCrsTest, DifferentSystemsAreRefused) {
   try {
     common({{"a", "EPSG:32632"}, {"b", "EPSG:32633"}});
     FAIL() << "no error";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("b has the coordinate system EPSG:32633"),
                                     HasSubstr("but a has EPSG:32632")));
     EXPECT_EQ(error.facts().file, "b");
@@ -77,7 +77,7 @@ TEST_F(InputCrsTest, TheGivenOneReplacesOthersOnlyWhereThatIsForced) {
   try {
     common(inputs, false, "here");
     FAIL() << "no error";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_STREQ(error.what(),
                  "b has the coordinate system there, but here is given; leave that out, or put it "
                  "in the place of what files tell");
@@ -96,4 +96,4 @@ TEST_F(InputCrsTest, ALongTextWithoutANameIsCutInMessages) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "src/error.h"
 #include "stream/source/false_header.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -27,7 +27,7 @@ PointHeader header(const std::string& name, std::uint64_t count, double lo, doub
   header.name = name;
   header.format = "las";
   header.count = count;
-  header.lattice = Lattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
+  header.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {0, 0, 0}};
   header.extent.emplace();
   header.extent->expand(Point<3>{lo, lo, lo});
   header.extent->expand(Point<3>{hi, hi, hi});
@@ -141,7 +141,7 @@ TEST(InputRegions, PointsOnTheSidesOfAnExactOneAreInside) {
   block.points = {{100, 100, 0}, {400, 100, 0}, {100, 400, 0}, {400, 400, 0}};
   block.index = {0, 1, 2, 3};
   EXPECT_NO_THROW(sorted.regions->check(block, 0));
-  EXPECT_THROW(sorted.regions->check(block, 1), Error);
+  EXPECT_THROW(sorted.regions->check(block, 1), Failure);
 }
 
 TEST(InputRegions, AFilterLeavesAPartOfThem) {
@@ -192,4 +192,4 @@ TEST(InputRegions, ABoxThatIsAStepOffIsNotFalse) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

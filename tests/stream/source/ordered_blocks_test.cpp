@@ -10,7 +10,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kPieces = 50;
@@ -47,11 +47,11 @@ TEST(OrderedBlocks, ComeInTheOrderOfThePieces) {
 TEST(OrderedBlocks, AnErrorOfAPieceReachesTheCaller) {
   class CorruptPiece final : public NumberedPieces {
     void decode(SourcePiece& piece, PointBlock& /*block*/) override {
-      if (piece.first_index == 20) throw Error("piece 20 is corrupt");
+      if (piece.first_index == 20) throw Failure("piece 20 is corrupt");
     }
   } pieces;
-  EXPECT_THROW(for_each_block(pieces, [](PointBlock&) {}), Error);
+  EXPECT_THROW(for_each_block(pieces, [](PointBlock&) {}), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

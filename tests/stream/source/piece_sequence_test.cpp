@@ -12,7 +12,7 @@
 #include "tests/formats/inputs/temporary_files.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -59,7 +59,7 @@ class PieceSequenceTest : public ::testing::Test {
     return all;
   }
 
-  testing::TemporaryFiles files_;
+  test::TemporaryFiles files_;
   std::vector<std::string> paths_;
   SourceFacts facts_;
   std::string said_;
@@ -165,12 +165,12 @@ TEST_F(PieceSequenceTest, AFileThatAnotherProcessSawOtherwiseIsRefused) {
   try {
     of_another.begin_piece(1, 0);
     FAIL() << "no error";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), HasSubstr("b.txt: rank 3 reads another file of this name"));
     EXPECT_THAT(error.what(), HasSubstr("of the same size, but with other contents"));
   }
   static_cast<void>(files_.put("b.txt", "11 0 0 \n"));
-  EXPECT_THROW(of_another.begin_piece(1, 0), Error);
+  EXPECT_THROW(of_another.begin_piece(1, 0), Failure);
 }
 
 /// What a run says that has looked at headers, when others stand in the files' place.
@@ -187,14 +187,14 @@ class ChangedInput : public PieceSequenceTest {
     try {
       fetch_all(all);
       return "";
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       EXPECT_THAT(error.facts().file, HasSubstr(name));
       return error.what();
     }
   }
 
   static std::string las(double scale, double offset = 0, std::int32_t x = 1) {
-    testing::LasFile file;
+    test::LasFile file;
     file.scale = {scale, scale, scale};
     file.offset = {offset, 0, 0};
     file.records[0].x = x;
@@ -234,4 +234,4 @@ TEST_F(PieceSequenceTest, AReaderThatIsOpenGoesOn) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

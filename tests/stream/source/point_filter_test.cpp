@@ -13,12 +13,12 @@
 #include "src/error.h"
 #include "tests/formats/points/las_flags_layout.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::flags_layout;
-using testing::flags_of;
-using testing::records_of;
+using test::flags_layout;
+using test::flags_of;
+using test::records_of;
 
 TEST(ReturnFilter, FirstLastAndSingle) {
   const ReturnFilter first{.first = true};
@@ -64,7 +64,7 @@ PointBlock twelve_points() {
 }
 
 PointCounts apply(const PointFilter& filter, PointBlock& block,
-                  const std::optional<Lattice>& lattice = std::nullopt) {
+                  const std::optional<IntegerLattice>& lattice = std::nullopt) {
   PointCounts counts;
   counts.read = block.size();
   apply_filter(filter, lattice, flags_layout(), block, counts);
@@ -101,7 +101,7 @@ TEST(PointFilter, EveryCountsRecordsNotPointsThatWereKept) {
 
 TEST(PointFilter, BoundsAreClosedAndInOutputCoordinates) {
   constexpr double kAll = std::numeric_limits<double>::infinity();
-  const Lattice lattice{{0.5, 0.5, 0.1}, {1000, 0, 0}};
+  const IntegerLattice lattice{{0.5, 0.5, 0.1}, {1000, 0, 0}};
   PointBlock plane = twelve_points();
   apply({.bounds = Box<3>{{1001, 0, -kAll}, {1002, 0, kAll}}}, plane, lattice);
   EXPECT_EQ(plane.index, (std::vector<std::uint64_t>{102, 103, 104}));
@@ -125,7 +125,7 @@ TEST(PointFilter, AFilterThatLeavesNoPointsNamesTheClassesThatThereAre) {
     const PointCounts counts = apply(filter, block);
     try {
       refuse_empty_input(counts);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return std::string(error.what());
     }
   };
@@ -145,4 +145,4 @@ TEST(PointCounts, AddUp) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,17 +7,17 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Inputs a, b, ... of one format, each on a lattice or on none.
-SourceFacts inputs_on(const std::vector<std::optional<Lattice>>& lattices,
+SourceFacts inputs_on(const std::vector<std::optional<IntegerLattice>>& lattices,
                       const std::string& format = "las") {
   SourceFacts facts;
-  for (const std::optional<Lattice>& lattice : lattices) {
+  for (const std::optional<IntegerLattice>& lattice : lattices) {
     PointHeader header;
     header.name = std::string(1, static_cast<char>('a' + facts.inputs.size()));
     header.format = format;
@@ -27,7 +27,7 @@ SourceFacts inputs_on(const std::vector<std::optional<Lattice>>& lattices,
   return facts;
 }
 
-Lattice lattice(double scale, double offset = 0, double z_offset = 0) {
+IntegerLattice lattice(double scale, double offset = 0, double z_offset = 0) {
   return {{scale, scale, scale}, {offset, offset, z_offset}};
 }
 
@@ -60,7 +60,7 @@ TEST_F(SourceCoordinatesTest, OneInputKeepsItsIntegers) {
 TEST_F(SourceCoordinatesTest, SeveralLatticesBecomeOne) {
   const SourceFacts facts = inputs_on({lattice(0.5, 10), lattice(0.25, 8, 1)});
   const SourceCoordinates all = coordinates(facts);
-  ASSERT_EQ(all.lattice(), (Lattice{{0.25, 0.25, 0.25}, {8, 8, 0}}));
+  ASSERT_EQ(all.lattice(), (IntegerLattice{{0.25, 0.25, 0.25}, {8, 8, 0}}));
   EXPECT_EQ(brought(all, 0, {1, 2, 3}), (LatticePoint{10, 12, 6}));
   EXPECT_EQ(brought(all, 1, {1, 2, 3}), (LatticePoint{1, 2, 7}));
   EXPECT_EQ(said_, "points come on a lattice of step 0.25, heights on it, too\n");
@@ -96,14 +96,14 @@ TEST_F(SourceCoordinatesTest, ABoxIsBroughtAlong) {
 
 /// 0.01 n + 0.25 runs into its neighbours above 2^51 or so.
 TEST_F(SourceCoordinatesTest, PointsThatFallTogetherAreRefusedInTheirBlock) {
-  const SourceFacts facts = inputs_on({Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
+  const SourceFacts facts = inputs_on({IntegerLattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
   const SourceCoordinates all = coordinates(facts);
   EXPECT_EQ(brought(all, 0, {0x1p40, 0, 0})[0], 0x1p40);
-  EXPECT_THROW(brought(all, 0, {-0x1p52, 0, 0}), Error);
+  EXPECT_THROW(brought(all, 0, {-0x1p52, 0, 0}), Failure);
 }
 
 TEST_F(SourceCoordinatesTest, PointsThatAreDroppedMayFallTogether) {
-  const SourceFacts facts = inputs_on({Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
+  const SourceFacts facts = inputs_on({IntegerLattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
   PointBlock block;
   block.points = {{-0x1p52, 0, 0}, {5, 5, 5}};
   block.index = {0, 1};
@@ -114,12 +114,12 @@ TEST_F(SourceCoordinatesTest, PointsThatAreDroppedMayFallTogether) {
 }
 
 TEST_F(SourceCoordinatesTest, AHeaderThatTellsOfSuchPointsIsEnough) {
-  SourceFacts facts = inputs_on({Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
+  SourceFacts facts = inputs_on({IntegerLattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}}}, "spp");
   facts.inputs[0].header.extent = Box<3>{{-5e13, 0, 0}, {0, 0, 0}};
-  EXPECT_THROW(coordinates(facts), Error);
+  EXPECT_THROW(coordinates(facts), Failure);
   EXPECT_NO_THROW(coordinates(facts, {.every = 2}));
   EXPECT_NO_THROW(coordinates(facts, {.bounds = Box<3>{{-9, -9, -9}, {9, 9, 9}}}));
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

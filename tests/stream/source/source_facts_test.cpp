@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// An input of `count` points in [lo, hi] of x and in [0, 10] of y.
@@ -58,4 +58,4 @@ TEST(SourceFacts, OneInputIsEnoughToHaveHeightsOrAttributes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

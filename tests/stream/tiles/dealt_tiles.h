@@ -13,7 +13,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/tiles/tile_tree.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 /// What is told of points before they come.
 struct Knowledge {
@@ -82,7 +82,7 @@ class AscendingProgress final : public DealingWatch {
 /// Deals points, whose numbers are their indices.
 template <int D>
 DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dealing& dealing) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   TileTreeOptions options{.dimension = D,
                           .capacity = dealing.capacity,
@@ -139,4 +139,4 @@ DealtTiles<D> deal_into_tiles(const std::vector<LatticePoint>& points, const Dea
   return dealt;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 enum class Order {
   kRandom,
@@ -103,4 +103,4 @@ inline std::vector<LatticePoint> make_points(Order order, std::size_t count, boo
   return points;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

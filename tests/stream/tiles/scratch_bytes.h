@@ -13,7 +13,7 @@
 #include "stream/points/encoded_points.h"
 #include "stream/tiles/storage/tile_segment.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 
 class ScratchBytes : public ScratchFile {
  public:
@@ -23,7 +23,7 @@ class ScratchBytes : public ScratchFile {
     bytes.insert(bytes.end(), some.begin(), some.end());
   }
   void read(std::uint64_t offset, std::span<std::byte> buffer) const override {
-    if (offset + buffer.size() > bytes.size()) throw Error(name_ + " ends too early");
+    if (offset + buffer.size() > bytes.size()) throw Failure(name_ + " ends too early");
     std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), buffer.size(), buffer.begin());
   }
   [[nodiscard]] std::uint64_t size() const override { return bytes.size(); }
@@ -47,4 +47,4 @@ inline TileSegment written_segment(const std::shared_ptr<ScratchBytes>& file, st
   return segment;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,12 +9,12 @@
 #include <random>
 #include <type_traits>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <typename Dimension>
-class TreeOver : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class TreeOver : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(TreeOver, Dimensions);
 
 template <int D>
@@ -138,4 +138,4 @@ TYPED_TEST(TreeOver, EqualAndFlatBoxesIsBalanced) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

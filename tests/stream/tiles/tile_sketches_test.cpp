@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kMuch = 1 << 20;  ///< bytes
@@ -184,4 +184,4 @@ TEST(TileSketches, ATileThatIsASmallPartOfAllHasFewCells) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

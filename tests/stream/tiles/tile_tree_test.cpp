@@ -16,7 +16,7 @@
 #include "tests/stream/tiles/dealt_tiles.h"
 #include "tests/stream/tiles/ordered_points.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kCapacity = 1000;
@@ -86,12 +86,12 @@ std::size_t count_of_too_long(const DealtTiles<2>& dealt, std::size_t capacity) 
   }));
 }
 
-class TileTreeOfOrder : public testing::TestWithParam<Order> {};
+class TileTreeOfOrder : public ::testing::TestWithParam<Order> {};
 
 TEST_P(TileTreeOfOrder, KeepsEveryPointInTilesOfTheCapacity) {
   const Points points = make_points(GetParam(), kMany);
   for (const Knowledge known : {kNothing, Knowledge{true, false}, kAll}) {
-    SCOPED_TRACE(testing::Message()
+    SCOPED_TRACE(::testing::Message()
                  << "count known " << known.count << ", extent " << known.extent);
     const DealtTiles<2> dealt = deal(points, known);
     EXPECT_EQ(fault_of(dealt, points), "");
@@ -189,11 +189,11 @@ TEST_P(TileTreeOfOrder, DividedEvenlyIsTheSameForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, TileTreeOfOrder,
-                         testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
-                                         Order::kStrips, Order::kOutwards, Order::kCurve,
-                                         Order::kSkewed, Order::kCluster, Order::kEqual,
-                                         Order::kRepeated),
-                         testing::PrintToStringParamName());
+                         ::testing::Values(Order::kRandom, Order::kSorted, Order::kFlightLines,
+                                           Order::kStrips, Order::kOutwards, Order::kCurve,
+                                           Order::kSkewed, Order::kCluster, Order::kEqual,
+                                           Order::kRepeated),
+                         ::testing::PrintToStringParamName());
 
 /// Buffers that hold a third of the points, and very few.
 constexpr std::array kDealings = {Dealing{.buffered = 20'000},
@@ -212,7 +212,7 @@ TEST(TileTree, MakesCompactTilesInWhateverOrderPointsCome) {
   for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines, Order::kStrips,
                             Order::kOutwards, Order::kCurve}) {
     EXPECT_EQ(count_of_long(deal(make_points(order, kMany), kNothing)), 0U)
-        << testing::PrintToString(order);
+        << ::testing::PrintToString(order);
   }
 }
 
@@ -247,9 +247,9 @@ TEST(TileTree, DividedEvenlyKeepsTheOrderOfEqualPointsWhereTilesAreCutAgain) {
     for (const std::size_t buffered : {4'000, 9'000, 20'000}) {
       const DealtTiles<2> dealt = deal_into_tiles<2>(
           points, {.capacity = 200, .buffered = buffered, .block = 250, .evenly = true});
-      EXPECT_EQ(fault_of(dealt, points), "") << testing::PrintToString(order) << buffered;
-      EXPECT_EQ(out_of_order(dealt), 0U) << testing::PrintToString(order) << buffered;
-      EXPECT_EQ(apart_from_equal(dealt), 0U) << testing::PrintToString(order) << buffered;
+      EXPECT_EQ(fault_of(dealt, points), "") << ::testing::PrintToString(order) << buffered;
+      EXPECT_EQ(out_of_order(dealt), 0U) << ::testing::PrintToString(order) << buffered;
+      EXPECT_EQ(apart_from_equal(dealt), 0U) << ::testing::PrintToString(order) << buffered;
     }
   }
 }
@@ -369,14 +369,14 @@ TEST(TileTree, KeepsPointsFarFromTheOrigin) {
 TEST(TileTree, WritesEveryPointOnceWhenTheHeaderTellsTheTruth) {
   for (const Order order : {Order::kRandom, Order::kSorted, Order::kFlightLines}) {
     EXPECT_LE(deal(make_points(order, kMany), kAll).writes(), 1.02)
-        << testing::PrintToString(order);
+        << ::testing::PrintToString(order);
   }
 }
 
 TEST(TileTree, WritesLittleTwiceInTheOrderOfAScanner) {
   for (const Order order : {Order::kSorted, Order::kFlightLines, Order::kCurve}) {
     EXPECT_LE(deal(make_points(order, kMany), kNothing).writes(), 1.02)
-        << testing::PrintToString(order);
+        << ::testing::PrintToString(order);
   }
 }
 
@@ -403,7 +403,7 @@ TEST(TileTree, TakesEqualPointsAsOneTileWhateverTheirNumber) {
 
 TEST(TileTree, SurvivesAHeaderThatLies) {
   const Points points = make_points(Order::kSorted, 250'000);
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   TileTreeOptions options{.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered};
   options.expected = 10;
@@ -426,7 +426,7 @@ TEST(TileTree, SurvivesAHeaderThatLies) {
 
 /// Points dealt again, of points in an order that hides where the others will lie, and a sample.
 std::uint64_t dealt_again(const Points& points, const Points& sample) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   TileTreeOptions options{.dimension = 2, .capacity = kCapacity, .buffered_points = kBuffered};
   options.expected = points.size();
@@ -462,7 +462,7 @@ TEST(TileTree, OfASampleIsRightFromTheFirstPointOn) {
 }
 
 TEST(TileTree, SaysWhenTheDiskIsFull) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), 10'000);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), 10'000);
   StageTimes times;
   const Points points = make_points(Order::kRandom, 300'000);
   with_threads(2, [&] {
@@ -477,11 +477,11 @@ TEST(TileTree, SaysWhenTheDiskIsFull) {
       });
       tree.divide_large();
       FAIL() << "the cap was not kept";
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       EXPECT_EQ(error.facts().remedy, Remedy::kScratchLimit) << error.what();
     }
   });
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
@@ -109,4 +109,4 @@ TEST(BorderGrowth, TellsNothingWhereTilesThemselvesTakeAllMemory) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "src/runtime/memory_budget.h"
 #include "stream/tiles/tile_tree.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// A simplex by its finite corners, sorted: infinite ones have one less.
@@ -34,7 +34,7 @@ Named<D> named(const Corners& corners, const PointOf& point_of) {
 template <int D>
 std::multiset<Named<D>> simplices_of(const std::vector<Point<D>>& points) {
   std::multiset<Named<D>> all;
-  const Triangulation<D> mesh = delaunay<D>(points, {});
+  const Triangulation<D> mesh = delaunay_triangulation<D>(points, {});
   mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
     all.insert(named<D>(simplex.vertices, [&](VertexId v) { return mesh.points[v]; }));
   });
@@ -53,7 +53,7 @@ std::multiset<Named<D>> simplices_of(const Border<D>& border) {
 /// All simplices of points that are triangulated for themselves.
 template <int D>
 Border<D> border_of(const std::vector<Point<D>>& points) {
-  const Triangulation<D> mesh = delaunay<D>(points, {});
+  const Triangulation<D> mesh = delaunay_triangulation<D>(points, {});
   Border<D> border;
   border.dimension = mesh.dimension;
   for (const Point<D>& point : mesh.points) {
@@ -87,8 +87,8 @@ std::vector<Point<D>> random_points(std::size_t count, double begin, unsigned se
 }
 
 template <typename Dimension>
-class BorderMerge : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class BorderMerge : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(BorderMerge, Dimensions);
 
 template <int D>
@@ -186,9 +186,9 @@ TYPED_TEST(BorderMerge, NeedsMemory) {
   Task task;
   EXPECT_THROW(
       merged<kD>({random_points<kD>(300, 0, 7), random_points<kD>(300, 1, 8)}, budget, task),
-      Error);
+      Failure);
   EXPECT_EQ(budget.used(), 0U);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

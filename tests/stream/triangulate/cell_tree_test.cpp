@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -106,4 +106,4 @@ TEST(CellTree, WhatKnewThatItIsAloneIsNotSettledAgain) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

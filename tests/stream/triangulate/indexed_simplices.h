@@ -10,7 +10,7 @@
 
 #include "src/delaunay/delaunay.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 template <int D>
 using IndexedSimplices = std::vector<std::array<VertexId, D + 1>>;
@@ -30,7 +30,7 @@ std::vector<Point<D>> random_points(std::size_t count, unsigned seed) {
 /// All finite simplices, each sorted, and sorted.
 template <int D>
 IndexedSimplices<D> triangulated(const std::vector<Point<D>>& points) {
-  const Triangulation<D> mesh = delaunay<D>(points, {.threads = 1});
+  const Triangulation<D> mesh = delaunay_triangulation<D>(points, {.threads = 1});
   IndexedSimplices<D> simplices;
   mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
     if (simplex.infinite()) return;
@@ -48,4 +48,4 @@ bool among(const IndexedSimplices<D>& some, const IndexedSimplices<D>& all) {
   return std::includes(all.begin(), all.end(), some.begin(), some.end());
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "src/geometry/predicates.h"
 #include "stream/triangulate/merge_tree.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 template <int D>
@@ -43,14 +43,14 @@ bool destroyed(const std::array<VertexId, D + 1>& simplex, std::span<const Point
 template <int D>
 class Tile {
  public:
-  explicit Tile(Points<D> all, std::size_t leaf_size = 150) {
+  explicit Tile(Points<D> all, std::size_t leaf_points = 150) {
     const auto beyond =
         std::partition(all.begin(), all.end(), [](const auto& p) { return p[0] < 1; });
     others_.assign(beyond, all.end());
     points_.assign(all.begin(), beyond);
     index_.resize(points_.size());
     std::iota(index_.begin(), index_.end(), VertexId{0});
-    root_ = divide<D>(points_, index_, {.leaf_size = leaf_size});
+    root_ = divide<D>(points_, index_, {.leaf_points = leaf_points});
     boxes_.resize(root_.list + 1);
     for (const Point<D>& p : others_) other_.box.expand(p);
     other_.points = others_.size();
@@ -152,8 +152,8 @@ Points<D> on_a_sphere(std::size_t count, double noise) {
 }
 
 template <typename Dimension>
-class LeafBorder : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class LeafBorder : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(LeafBorder, Dimensions);
 
 TYPED_TEST(LeafBorder, HasAllThatPointsOfASurfaceMayChangeAndLittleElse) {
@@ -200,4 +200,4 @@ TYPED_TEST(LeafBorder, LooksAtAllWhereAnotherTileOverlaps) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

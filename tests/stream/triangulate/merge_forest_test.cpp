@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Named {
@@ -148,4 +148,4 @@ TEST(MergeForest, ManyThreadsLeadToEachParentOnceThoughItIsJustBeingAdded) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

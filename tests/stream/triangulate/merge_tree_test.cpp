@@ -8,7 +8,7 @@
 #include "src/geometry/box.h"
 #include "src/parallel/parallel.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -105,4 +105,4 @@ TEST(MergeTree, EachNodeIsMergedOnceAfterItsChildrenByAnyThreads) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

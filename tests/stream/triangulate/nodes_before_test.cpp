@@ -15,7 +15,7 @@
 #include "formats/state/state_writer.h"
 #include "stream/triangulate/merge_forest.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct WithBorder {
@@ -31,10 +31,10 @@ Border<2> border_of(std::size_t vertices) {
   return border;
 }
 
-class NodesBeforeTest : public testing::Test {
+class NodesBeforeTest : public ::testing::Test {
  protected:
   NodesBeforeTest() {
-    std::string name = testing::TempDir() + "nodes_before_XXXXXX";
+    std::string name = ::testing::TempDir() + "nodes_before_XXXXXX";
     folder_ = ::mkdtemp(name.data());
   }
   ~NodesBeforeTest() override { std::filesystem::remove_all(folder_); }
@@ -145,4 +145,4 @@ TEST_F(NodesBeforeTest, AreTheSameInARunThatIsKilledOnceMore) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

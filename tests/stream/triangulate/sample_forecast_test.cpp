@@ -9,7 +9,7 @@
 
 #include "stream/triangulate/border.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<Point<3>> even_points(std::size_t count) {
@@ -75,4 +75,4 @@ TEST(SampleForecast, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,11 +108,11 @@ TEST(Settle, TooLongSimplicesAreLeftOutButTheirVerticesAreNot) {
 
 TEST(Settle, EdgesAreMeasuredInOutputUnits) {
   const Border<2> merged = strip(3);
-  const Lattice lattice{{0.01, 0.01, 0.01}, {5, 5, 5}};
+  const IntegerLattice lattice{{0.01, 0.01, 0.01}, {5, 5, 5}};
   const Settled<2> result = settled(merged, {Fate::kFinal}, {.lattice = lattice, .max_edge = 1.2});
   EXPECT_EQ(result.left_out, 0U);
   EXPECT_EQ(result.mesh.vertices[2], (LatticePoint{1, 0, 20})) << "vertices stay on the lattice";
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

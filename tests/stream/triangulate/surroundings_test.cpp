@@ -17,7 +17,7 @@
 #include "src/delaunay/delaunay.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// A tile of points in a tree of parts, its first leaf triangulated; another tile lies beside it.
@@ -41,7 +41,7 @@ struct Scene {
     }
     std::vector<VertexId> index(points.size());
     std::iota(index.begin(), index.end(), VertexId{0});
-    root = divide<D>(points, index, {.leaf_size = 60});
+    root = divide<D>(points, index, {.leaf_points = 60});
     boxes.resize(root.list + 1);
     set_boxes(root);
     const Part<D>* part = &root;
@@ -50,7 +50,7 @@ struct Scene {
       part = &part->children[0];
     }
     const std::vector<Point<D>> leaf(points.begin(), points.begin() + part->end);
-    const Triangulation<D> mesh = delaunay<D>(leaf, {.threads = 1});
+    const Triangulation<D> mesh = delaunay_triangulation<D>(leaf, {.threads = 1});
     mesh.for_each_simplex([&](SimplexId, const Simplex<D>& simplex) {
       simplices.push_back(simplex.vertices);
       for (VertexId& v : simplices.back()) {
@@ -94,8 +94,8 @@ struct Scene {
     ChangeSearch<D> search(around, std::numeric_limits<std::size_t>::max());
     for_each_region_batch<D>(
         simplices.size(), [&](std::size_t s) { return simplices[s]; }, std::span(points),
-        [&](std::size_t first, const RegionBatch<D>& regions) {
-          std::array<Exposure, RegionBatch<D>::kSize> exposure{};
+        [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
+          std::array<Exposure, ConflictRegionBatch<D>::kSize> exposure{};
           const std::uint64_t changed =
               search.may_change(regions, exposed ? exposure.data() : nullptr);
           for (std::size_t s = 0; s < 64 && (regions.all() >> s & 1) != 0; ++s) {
@@ -114,8 +114,8 @@ struct Scene {
 };
 
 template <typename Dimension>
-class ChangeSearchTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class ChangeSearchTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(ChangeSearchTest, Dimensions);
 
 TYPED_TEST(ChangeSearchTest, FindsAllThatPointsOfEachLevelOrOfOtherTilesChange) {
@@ -182,4 +182,4 @@ TYPED_TEST(ChangeSearchTest, ExposureIsToldOfAsManyLevelsAsItHasBits) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST(TaskSums, AddOthers) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

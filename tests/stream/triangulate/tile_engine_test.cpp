@@ -14,15 +14,15 @@
 #include "tests/stream/stream_runner.h"
 #include "tests/stream/triangulate/indexed_simplices.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::IndexedSimplices;
+using test::random_points;
+using test::triangulated;
 using ::testing::Each;
 using ::testing::Ge;
-using testing::IndexedSimplices;
 using ::testing::IsEmpty;
-using testing::random_points;
-using testing::triangulated;
 
 /// Gives points in batches, with indices from `first_index` on.
 class Feed : public PointFeed {
@@ -100,13 +100,13 @@ TYPED_TEST(TileEngineTest, TriangulatesTilesAndMergesThem) {
   EXPECT_THAT(border.simplices, IsEmpty());
   EXPECT_EQ(simplices_of<kD>(run.mesh), expected);
   EXPECT_EQ(run.mesh.live(), 0U);
-  const RunFigures figures = run.engine.figures();
-  EXPECT_EQ(figures.mesh.points, points.size());
-  EXPECT_EQ(figures.mesh.vertices, points.size());
-  EXPECT_EQ(figures.mesh.simplices, expected.size());
-  EXPECT_GT(figures.tiles, 5000U / 400);
-  EXPECT_GT(figures.leaves, figures.tiles);
-  EXPECT_GT(std::accumulate(figures.final_by_level.begin(), figures.final_by_level.end(),
+  const RunStatistics statistics = run.engine.statistics();
+  EXPECT_EQ(statistics.mesh.points, points.size());
+  EXPECT_EQ(statistics.mesh.vertices, points.size());
+  EXPECT_EQ(statistics.mesh.simplices, expected.size());
+  EXPECT_GT(statistics.tiles, 5000U / 400);
+  EXPECT_GT(statistics.leaves, statistics.tiles);
+  EXPECT_GT(std::accumulate(statistics.final_by_level.begin(), statistics.final_by_level.end(),
                             std::uint64_t{0}),
             0U);
 }
@@ -120,7 +120,7 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
   EngineRun<kD> run(options);
   run.spill(random_points<kD>(5000, 1));
   run.triangulate();
-  const RunFigures figures = run.engine.figures();
+  const RunStatistics statistics = run.engine.statistics();
   std::map<std::uint32_t, const TaskNode*> waiting;
   std::uint64_t tiles = 0;
   for (const TaskNode& node : told) {
@@ -139,7 +139,7 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
   }
   ASSERT_EQ(waiting.size(), 1U);
   EXPECT_EQ(waiting.begin()->first + 1, told.size());
-  EXPECT_EQ(tiles, figures.tiles);
+  EXPECT_EQ(tiles, statistics.tiles);
   std::uint64_t leaves = 0;
   std::uint64_t merges = 0;
   for (const TaskSum& sum : run.engine.task_sums()) {
@@ -150,7 +150,7 @@ TYPED_TEST(TileEngineTest, TellsEachNodeOnceAfterItsChildren) {
       merges += sum.tasks;
     }
   }
-  EXPECT_EQ(leaves, figures.leaves);
+  EXPECT_EQ(leaves, statistics.leaves);
   EXPECT_EQ(merges, told.size() - tiles);
 }
 
@@ -203,16 +203,16 @@ TEST(TileEngine, DividesTilesAgainThatBecameTooLarge) {
   EXPECT_GT(divided, 0U);
   EXPECT_FALSE(run.engine.is_to_divide());
   EXPECT_EQ(run.engine.take_nodes()->points, points.size());
-  const RunFigures figures = run.engine.figures();
-  EXPECT_EQ(figures.divided_points, divided);
-  EXPECT_GT(figures.spilled_points, 0U);
+  const RunStatistics statistics = run.engine.statistics();
+  EXPECT_EQ(statistics.divided_points, divided);
+  EXPECT_GT(statistics.spilled_points, 0U);
 }
 
 /// Fails when its second block comes.
 class FullSink : public BlockSink {
  public:
-  void write(MeshBlock&& /*block*/) override {
-    if (++blocks_ == 2) throw Error("the disk is full");
+  void write(MeshStreamBlock&& /*block*/) override {
+    if (++blocks_ == 2) throw Failure("the disk is full");
   }
   void finish(const MeshTotals& /*totals*/) override {}
 
@@ -231,7 +231,7 @@ TEST(TileEngine, EndsWithTheErrorOfItsSink) {
       engine.spill(feed);
       try {
         engine.triangulate(*engine.take_nodes(), {});
-      } catch (const Error& error) {
+      } catch (const Failure& error) {
         message = error.what();
       }
     });
@@ -247,4 +247,4 @@ TEST(TileEngine, RefusesALimitThatIsTooSmall) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

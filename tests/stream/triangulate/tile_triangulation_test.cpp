@@ -15,15 +15,15 @@
 #include "tests/stream/stream_runner.h"
 #include "tests/stream/triangulate/indexed_simplices.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::among;
+using test::among;
+using test::random_points;
+using test::triangulated;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using testing::random_points;
 using ::testing::SizeIs;
-using testing::triangulated;
 
 /// What tiles and merges share, and the stream that they make.
 template <int D>
@@ -213,11 +213,11 @@ TEST(ResidentBorders, TellTheMostThatThereWas) {
     EXPECT_EQ(borders.most_bytes(), 800U);
     EXPECT_EQ(budget.used(), 600U);
     const auto more = [&borders] { borders.add(1, 500); };
-    EXPECT_THROW(more(), Error);
+    EXPECT_THROW(more(), Failure);
     EXPECT_EQ(borders.most_bytes(), 800U);
   }
   EXPECT_EQ(budget.used(), 0U);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::Each;
@@ -206,4 +206,4 @@ TEST_P(WorkLanesTest, BeginsOthersWhileWhatFollowsIsDone) {
 INSTANTIATE_TEST_SUITE_P(Threads, WorkLanesTest, ::testing::Values(1, 2, 3, 8));
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/commands/opened_raster.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -236,4 +236,4 @@ TEST_F(Neighbours, PointsInABoxMakeTheRasterOfThesePoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

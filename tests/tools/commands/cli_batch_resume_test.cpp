@@ -15,7 +15,7 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ using ::testing::Not;
 constexpr const char* kFolder = "out/a.spm.resume";
 
 /// A workspace with two files of points, of which each keeps a job busy for a while.
-class ResumedBatch : public testing::Test {
+class ResumedBatch : public ::testing::Test {
  protected:
   ResumedBatch() {
     space.succeed(
@@ -43,7 +43,7 @@ class ResumedBatch : public testing::Test {
   [[nodiscard]] static std::vector<std::string> arguments(const std::string& kinds,
                                                           const Budget& budget) {
     return {
-        "batch", "in", "--output-dir", "out",      "--to",        kinds,      "--tile",
+        "batch", "in", "--output-dir", "out",      "--to",        kinds,      "--tile-points",
         "5000",  "-j", budget.jobs,    "--memory", budget.memory, "--resume", "--checkpoint-every",
         "0.01"};
   }
@@ -121,7 +121,7 @@ TEST_F(ResumedBatch, GoesOnWhenItWasInterrupted) {
 TEST_F(ResumedBatch, RemovesRecordsThatWereNotComplete) {
   space.succeed("mkdir out; touch out/a.status.json.Ab12Cd.part out/other.json.Ab12Cd.part");
   space.succeed(command("spm"));
-  EXPECT_THAT(left(), testing::ElementsAre("other.json.Ab12Cd.part"));
+  EXPECT_THAT(left(), ::testing::ElementsAre("other.json.Ab12Cd.part"));
 }
 
 TEST_F(ResumedBatch, GoesOnWithTheMemoryThatAJobHadWhateverTheOthersGet) {
@@ -158,7 +158,7 @@ TEST_F(ResumedBatch, KeepsNothingWithoutResume) {
   const Result result = space.run("spillway batch in/a.las --output-dir out --to spm");
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.err, HasSubstr("a: begins again, as --resume is not given"));
-  EXPECT_THAT(left(), Not(testing::Contains(testing::StartsWith("a."))));
+  EXPECT_THAT(left(), Not(::testing::Contains(::testing::StartsWith("a."))));
 }
 
 TEST_F(ResumedBatch, SaysWhichFileOfAJobIsDamagedAndWhatToRemove) {
@@ -208,4 +208,4 @@ TEST_F(ResumedBatch, HasNoUseForCheckpointsWithoutResume) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/halved_box.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -69,14 +69,15 @@ TEST_F(Batch, DoesAJobWhoseHeadersAreFalse) {
               "in = 'in/t_*.las'\n");
   space.succeed("spillway batch jobs.toml --output-dir out");
   EXPECT_THAT(space.read("out/all.log"), HasSubstr("all points are read again"));
-  const std::string hash = mesh_hash("--distrust-headers 'in/t_*.las'");
+  const std::string hash = mesh_hash("--no-trust-headers 'in/t_*.las'");
   EXPECT_EQ(space.info("out/all.spm")["canonical_hash"], hash);
   EXPECT_EQ(space.info("out/all.ply")["canonical_hash"], hash);
 }
 
 TEST_F(Batch, LeavesNoTemporaryMeshBehind) {
   space.succeed(
-      "mkdir tmp && spillway batch in/north.las --output-dir out --to ply,vtu --tmpdir tmp");
+      "mkdir tmp && spillway batch in/north.las --output-dir out --to ply,vtu --scratch-folder "
+      "tmp");
   EXPECT_EQ(space.succeed("ls -A tmp"), "");
   EXPECT_FALSE(space.has("out/north.spm"));
 }
@@ -210,7 +211,7 @@ TEST_F(Batch, SaysThatAFolderCannotBeWritten) {
       space.run("TMPDIR=none spillway batch 'in/*' --output-dir out --to ply");
   EXPECT_EQ(no_scratch.exit_code, 1);
   EXPECT_THAT(no_scratch.err, HasSubstr("cannot create a temporary folder in none: No such file or "
-                                        "directory; choose another folder with --tmpdir"));
+                                        "directory; choose another folder with --scratch-folder"));
   EXPECT_FALSE(space.has("out"));
 }
 
@@ -255,4 +256,4 @@ TEST_F(Batch, GoesOnWhenInputsOrRecordsOfAJobMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

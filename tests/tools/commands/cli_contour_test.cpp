@@ -10,7 +10,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -58,7 +58,7 @@ TEST_F(Contour, DrawsTheSameOfPointsMeshesAndStreams) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   space.succeed(
       "spillway triangulate cone.txt -o cone.ply && spillway triangulate cone.txt -o cone.spm "
-      "--tile 100");
+      "--tile-points 100");
   space.succeed("spillway contour cone.txt -o points.geojson --force-crs --levels 3,9.5");
   space.succeed("spillway contour cone.ply -o mesh.geojson --force-crs --levels 3,9.5");
   space.succeed("spillway contour cone.spm -o stream.geojson --force-crs --levels 3,9.5");
@@ -103,8 +103,9 @@ TEST_F(Contour, ThatMeetThemselvesDependOnNoTilesThreadsAndOrders) {
   EXPECT_GT(expected.size(), 300U);
   unsigned seed = 1;
   for (const std::string options :
-       {"--threads 2", "--tile 500", "--tile 100", "--base-case 9 --threads 4",
-        "--tile 200 --base-case 25 --children 3", "--division cycling --tile 300"}) {
+       {"--threads 2", "--tile-points 500", "--tile-points 100", "--leaf-points 9 --threads 4",
+        "--tile-points 200 --leaf-points 25 --children 3",
+        "--division cycling --tile-points 300"}) {
     space.write("in.txt", whole_heights(seed++));
     EXPECT_EQ(lines("in.txt", options), expected) << options;
     space.succeed("spillway triangulate -q in.txt -o in.spm " + options +
@@ -248,4 +249,4 @@ TEST_F(Contour, GeoJsonRefusesDegreesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

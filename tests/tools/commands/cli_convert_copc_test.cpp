@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -57,7 +57,7 @@ TEST(ConvertCopc, LittleMemoryGivesTheSamePoints) {
       "spillway generate -q terrain -n 600000 -o in.las\n"
       "spillway convert -q in.las -o much.copc.laz --memory 1G\n"
       "mkdir scratch\n"
-      "spillway convert -q in.las -o little.copc.laz --memory 32M --tmpdir scratch\n"
+      "spillway convert -q in.las -o little.copc.laz --memory 32M --scratch-folder scratch\n"
       "rmdir scratch\n"  // nothing is left there
       + same_points("much.copc.laz", "little.copc.laz"));
   EXPECT_EQ(work.info("much.copc.laz")["cells"], work.info("little.copc.laz")["cells"]);
@@ -66,8 +66,8 @@ TEST(ConvertCopc, LittleMemoryGivesTheSamePoints) {
 TEST(ConvertCopc, ALimitOfScratchFilesLeavesNothing) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 600000 -o in.las");
-  const Result run =
-      work.run("spillway convert -q in.las -o out.copc.laz --memory 32M --max-tmp 5M --tmpdir .");
+  const Result run = work.run(
+      "spillway convert -q in.las -o out.copc.laz --memory 32M --max-tmp 5M --scratch-folder .");
   EXPECT_NE(run.exit_code, 0);
   EXPECT_THAT(run.err, HasSubstr("temporary files would take more"));
   EXPECT_EQ(work.names(), (std::vector<std::string>{"in.las"}));
@@ -109,12 +109,12 @@ const { Copc } = require('copc');
       const point = get.map((one) => one(i));
       point.forEach((value, axis) => {
         const low = copc.info.cube[axis] + cell[axis] * side;
-        if (value < low || value > low + side) throw new Error(`${key} has ${point}`);
+        if (value < low || value > low + side) throw new Failure(`${key} has ${point}`);
       });
       lines.push(point.map((value) => value.toFixed(2)).join(' '));
     }
   }
-  if (lines.length !== copc.header.pointCount) throw new Error('points are missing');
+  if (lines.length !== copc.header.pointCount) throw new Failure('points are missing');
   console.log(lines.join('\n'));
 })().catch((error) => { console.error(error); process.exit(1); });
 )";
@@ -150,4 +150,4 @@ TEST(ConvertCopc, TheNpmPackageCopcReadsAFileWithoutPoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

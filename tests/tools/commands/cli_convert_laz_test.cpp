@@ -9,7 +9,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 /// Compares each record that laz-perf decodes of a LAZ file with that of a LAS file.
@@ -27,13 +27,13 @@ const { createLazPerf } = require('laz-perf');
   perf.HEAPU8.set(laz, file);
   const reader = new perf.LASZip();
   reader.open(file, laz.length);
-  if (reader.getCount() !== count) throw new Error(`${reader.getCount()} of ${count} points`);
+  if (reader.getCount() !== count) throw new Failure(`${reader.getCount()} of ${count} points`);
   for (let i = 0; i < count; ++i) {
     reader.getPoint(record);
     const decoded = Buffer.from(perf.HEAPU8.subarray(record, record + length));
     const stored = las.subarray(first + i * length, first + (i + 1) * length);
     if (!decoded.equals(stored)) {
-      throw new Error(`record ${i}: ${decoded.toString('hex')}, not ${stored.toString('hex')}`);
+      throw new Failure(`record ${i}: ${decoded.toString('hex')}, not ${stored.toString('hex')}`);
     }
   }
   console.log(`format ${las.readUInt8(104)}, ${count} points`);
@@ -86,4 +86,4 @@ TEST_P(ConvertLaz, IsDecodedByTheNpmPackageLazPerfToTheRecordsOfLas) {
 INSTANTIATE_TEST_SUITE_P(PointFormats, ConvertLaz, ::testing::Values(0, 1, 3, 6, 7, 8));
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

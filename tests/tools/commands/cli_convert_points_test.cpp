@@ -14,7 +14,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -113,7 +113,7 @@ TEST(ConvertPoints, KeepsAttributesAndTellsWhatItDrops) {
 
 /// A LAS 1.4 file of that point format, with extra bytes in its records.
 std::string las_of_format(int point_format, std::size_t extra_bytes) {
-  testing::LasFile las = scattered_las(0, 5);
+  test::LasFile las = scattered_las(0, 5);
   las.minor = 4;
   las.point_format = point_format;
   las.extra_bytes = extra_bytes;
@@ -218,14 +218,14 @@ TEST(ConvertPoints, GivesAPipeWhatAFileWouldHold) {
       "spillway convert -q in.las -o out.npy --attributes none\n"
       "spillway convert -q in.las -o out.las --attributes none");
   for (const std::string format : {"npy", "las"}) {
-    work.succeed(
-        fmt::format("spillway convert -q - -o - --output-format {0} --attributes none < in.las > "
-                    "piped.{0}\n"
-                    "cmp out.{0} piped.{0}\n"
-                    "cat in.las | spillway convert -q - -o - --tmpdir . | "
-                    "spillway convert -q - -o - --output-format {0} --attributes none --tmpdir . "
-                    "| cat > piped.{0}",
-                    format));
+    work.succeed(fmt::format(
+        "spillway convert -q - -o - --output-format {0} --attributes none < in.las > "
+        "piped.{0}\n"
+        "cmp out.{0} piped.{0}\n"
+        "cat in.las | spillway convert -q - -o - --scratch-folder . | "
+        "spillway convert -q - -o - --output-format {0} --attributes none --scratch-folder . "
+        "| cat > piped.{0}",
+        format));
   }
   work.succeed(
       "cmp out.npy piped.npy\n"
@@ -485,4 +485,4 @@ TEST(ConvertPoints, TakesNoMoreMemoryForMorePoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -59,16 +59,16 @@ TEST(Convert, TellsTheOriginOfAnStlThatOtherProgramsDoNotKnow) {
   const Workspace work;
   work.write("far.txt", "500010.25 4100020.5 30\n500011 4100020 31\n500010 4100022 32\n");
   const std::string far = work.run("spillway triangulate far.txt -o far.stl").err;
-  EXPECT_THAT(far, testing::ContainsRegex("find them without 50001[01], 410002[0-2], 3[0-2], the "
-                                          "origin that far.stl names"));
+  EXPECT_THAT(far, ::testing::ContainsRegex("find them without 50001[01], 410002[0-2], 3[0-2], the "
+                                            "origin that far.stl names"));
   work.succeed("spillway triangulate -q far.txt -o far.ply");
   EXPECT_THAT(work.run("spillway convert far.ply -o far.stl").err,
               HasSubstr("find them without 5"));
   EXPECT_THAT(work.run("spillway convert far.ply -o far.glb").err,
-              testing::Not(HasSubstr("find them without")));
+              ::testing::Not(HasSubstr("find them without")));
   work.write("near.txt", "0.1 0.1 0.1\n0.4 0 0.2\n0 0.4 0.3\n");
   EXPECT_THAT(work.run("spillway triangulate near.txt -o near.stl").err,
-              testing::Not(HasSubstr("find them without")));
+              ::testing::Not(HasSubstr("find them without")));
 }
 
 TEST(Convert, PassesAStreamThroughAPipe) {
@@ -113,4 +113,4 @@ TEST(Convert, WhatSpmCannotHoldIsRefused) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -23,10 +23,11 @@ class DemOfASurvey : public ::testing::Test {
         "spillway generate terrain -n 40000 -q --grid 7x7 -o 't_#.las'");
   }
 
-  /// The figures of a raster that is made with small tiles of points.
+  /// The statistics of a raster that is made with small tiles of points.
   nlohmann::json make(const std::string& name, const std::string& arguments) {
-    messages_ = work_.run("spillway dem --resolution 0.25 --tile 2000 --stats stats.json -o " +
-                          name + " " + arguments);
+    messages_ =
+        work_.run("spillway dem --resolution 0.25 --tile-points 2000 --stats stats.json -o " +
+                  name + " " + arguments);
     EXPECT_EQ(messages_.exit_code, 0) << messages_.err;
     return nlohmann::json::parse(work_.read("stats.json"));
   }
@@ -57,10 +58,10 @@ TEST_F(DemOfASurvey, IsPaintedEarlyAndEqualsThatOfOneFile) {
        {"--cog", "--product slope,aspect,height,hillshade", "--product height,density", "--align",
         "--max-edge 5", "--bounds 500000,4100000,500250,4100300"}) {
     // Which of several points with equal x and y comes first is up to the files.
-    const std::string all = " --duplicates lowest " + options;
+    const std::string all = " --heights lowest " + options;
     EXPECT_FALSE(is_early(make("one.tif", "all.las" + all)));
     EXPECT_TRUE(is_early(make("early.tif", "t_*.las --memory 64M" + all))) << options;
-    EXPECT_FALSE(is_early(make("late.tif", "$(ls -r t_*.las) --distrust-headers" + all)));
+    EXPECT_FALSE(is_early(make("late.tif", "$(ls -r t_*.las) --no-trust-headers" + all)));
     EXPECT_TRUE(same("early.tif", "one.tif")) << options;
     EXPECT_TRUE(same("late.tif", "one.tif")) << options;
   }
@@ -79,7 +80,7 @@ TEST_F(DemOfASurvey, ClosesTilesOfPixelsBeforeAllTrianglesHaveCome) {
 TEST_F(DemOfASurvey, PointsMissingInACornerHaveNoData) {
   work_.succeed("rm t_00_*.las t_01_00.las t_06_06.las");
   const nlohmann::json early = make("early.tif", "t_*.las");
-  make("late.tif", "t_*.las --distrust-headers");
+  make("late.tif", "t_*.las --no-trust-headers");
   EXPECT_TRUE(is_early(early));
   EXPECT_TRUE(same("early.tif", "late.tif"));
   EXPECT_LT(early["raster"]["pixels_with_data"],
@@ -98,7 +99,7 @@ TEST_F(DemOfASurvey, BoxesThatAreTooLargeAreFoundOut) {
   EXPECT_THAT(messages_.err, HasSubstr("headers tell another extent"));
   EXPECT_EQ(stats["points"], 40'000);
   EXPECT_TRUE(same("dem.tif", "true.tif"));
-  make("late.tif", "t_*.las --distrust-headers");
+  make("late.tif", "t_*.las --no-trust-headers");
   EXPECT_THAT(messages_.err, Not(HasSubstr("headers tell")));
   EXPECT_TRUE(same("late.tif", "true.tif"));
 }
@@ -173,4 +174,4 @@ TEST_F(DemOfASurvey, OfASortedStreamThroughAPipeIsEarly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

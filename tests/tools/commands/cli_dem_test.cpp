@@ -17,7 +17,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/commands/opened_raster.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -114,7 +114,7 @@ TEST(Dem, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
       "spillway dem -q in.las -o two.tif --threads 2 " +
       products +
       "\n"
-      "spillway dem -q in.las -o tiles.tif --threads 2 --tile 2000 --base-case 300 " +
+      "spillway dem -q in.las -o tiles.tif --threads 2 --tile-points 2000 --leaf-points 300 " +
       products + "\nspillway dem -q - -o pipe.tif < in.las " + products +
       "\n"
       "spillway dem -q tin.spm -o spm.tif " +
@@ -161,11 +161,14 @@ TEST(Dem, TiesAndZerosGiveTheSameBytesInEveryOrderAndWay) {
       "spillway triangulate -q in.txt -o tin.spm && spillway triangulate -q in.txt -o tin.obj");
   work.succeed(dem + "in.txt -o one.tif --threads 1");
   const std::string expected = work.read("one.tif");
-  const std::vector<std::string> ways = {
-      " --memory 64M --tile 64",  " --tile 100",
-      " --base-case 7",           " --tile 250 --base-case 20 --children 3",
-      " --memory 256M --tile 64", " --division cycling --base-case 30",
-      " --kernel cgal",           " --tile 1000"};
+  const std::vector<std::string> ways = {" --memory 64M --tile-points 64",
+                                         " --tile-points 100",
+                                         " --leaf-points 7",
+                                         " --tile-points 250 --leaf-points 20 --children 3",
+                                         " --memory 256M --tile-points 64",
+                                         " --division cycling --leaf-points 30",
+                                         " --kernel cgal",
+                                         " --tile-points 1000"};
   for (unsigned threads = 1; threads <= 8; ++threads) {
     const std::string& way = ways[threads - 1];
     work.write("in.txt", ties(40, threads));
@@ -499,4 +502,4 @@ TEST(DemFaults, PointsWithoutHeightsHaveNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

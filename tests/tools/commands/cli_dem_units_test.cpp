@@ -9,7 +9,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/commands/opened_raster.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -80,7 +80,7 @@ TEST(DemUnits, DegreesGiveTheSameBytesHoweverTheyCome) {
   };
   const std::string crs = " --crs EPSG:4326 ";
   const std::string one = run("points.txt --threads 1" + crs, "one.tif");
-  EXPECT_EQ(run("points.txt --threads 3 --tile 30" + crs, "more.tif"), one);
+  EXPECT_EQ(run("points.txt --threads 3 --tile-points 30" + crs, "more.tif"), one);
   work.succeed("spillway triangulate -q points.txt -o tin.spm" + crs);
   EXPECT_EQ(run("tin.spm", "mesh.tif"), one);
 }
@@ -99,4 +99,4 @@ TEST(DemUnits, DegreesThatAreNoneAreRefusedWhereTheyCount) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -24,7 +24,7 @@ struct FormatCase {
 
 std::ostream& operator<<(std::ostream& out, const FormatCase& c) { return out << c.name; }
 
-class EveryMeshFormat : public testing::TestWithParam<FormatCase> {};
+class EveryMeshFormat : public ::testing::TestWithParam<FormatCase> {};
 
 /// Triangulates to the format and to PLY; both must have one hash, and `check` must prove the
 /// first.
@@ -81,15 +81,15 @@ TEST_P(EveryMeshFormat, HoldsTetrahedraOrRefusesThem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cli, EveryMeshFormat,
-                         testing::Values(FormatCase{"ply", "mesh.ply", "", true, true},
-                                         FormatCase{"ply-ascii", "mesh.ply",
-                                                    "--output-format ply-ascii", true, true},
-                                         FormatCase{"obj", "mesh.obj", "", false, false},
-                                         FormatCase{"off", "mesh.off", "", false, false},
-                                         FormatCase{"vtu", "mesh.vtu", "", true, true},
-                                         FormatCase{"npy", "mesh.npy", "", true, true}));
+                         ::testing::Values(FormatCase{"ply", "mesh.ply", "", true, true},
+                                           FormatCase{"ply-ascii", "mesh.ply",
+                                                      "--output-format ply-ascii", true, true},
+                                           FormatCase{"obj", "mesh.obj", "", false, false},
+                                           FormatCase{"off", "mesh.off", "", false, false},
+                                           FormatCase{"vtu", "mesh.vtu", "", true, true},
+                                           FormatCase{"npy", "mesh.npy", "", true, true}));
 
-class EveryPointFormat : public testing::TestWithParam<std::string> {};
+class EveryPointFormat : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryPointFormat, GivesTheSameTriangulation) {
   const Workspace work;
@@ -323,7 +323,7 @@ TEST(EndlessPipes, EndWithAnError) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cli, EveryPointFormat, testing::Values("txt", "csv", "npy"));
+INSTANTIATE_TEST_SUITE_P(Cli, EveryPointFormat, ::testing::Values("txt", "csv", "npy"));
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

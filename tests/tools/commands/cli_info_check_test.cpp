@@ -9,10 +9,10 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 TEST(Info, TellsThePointsOfALasFile) {
   const Workspace work;
@@ -48,14 +48,14 @@ TEST(Info, ListsWhatPointsCarry) {
   EXPECT_EQ((*angle)["offset"], 0);
   const std::string text = work.succeed("spillway info -q new.las");
   EXPECT_THAT(text, HasSubstr("  attributes\n    intensity              uint16\n"));
-  EXPECT_THAT(text, testing::ContainsRegex("    scan_angle +int16  scale 0.006  offset 0"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("    scan_angle +int16  scale 0.006  offset 0"));
 }
 
 TEST(Info, OfPointsWithoutAttributesSaysSo) {
   const Workspace work;
   work.write("in.txt", "0 0 7\n10 0 8\n0 5 9\n");
   EXPECT_EQ(work.info("in.txt")["attributes"], nlohmann::json::array());
-  EXPECT_THAT(work.succeed("spillway info -q in.txt"), testing::ContainsRegex("attributes +-\n"));
+  EXPECT_THAT(work.succeed("spillway info -q in.txt"), ::testing::ContainsRegex("attributes +-\n"));
 }
 
 TEST(Info, ExtentAndDensityOfTextAreExact) {
@@ -95,7 +95,7 @@ TEST(Info, ReadsPointsFromAPipeAndWritesForPeople) {
   const Workspace work;
   const std::string text =
       work.succeed("spillway generate -q uniform -n 100 --dim 3 -o - | spillway info -q -");
-  EXPECT_THAT(text, testing::ContainsRegex("points +100\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("points +100\n"));
   EXPECT_THAT(text, HasSubstr("extent min"));
 }
 
@@ -284,7 +284,7 @@ TEST(Check, AcceptsTheTriangulationOfEveryFamily) {
     for (const std::string dimension : {"2", "3"}) {
       work.succeed(
           fmt::format("spillway generate -q {} -n 700 {} -o points.npy\n"
-                      "spillway triangulate -q points.npy --dim {} --base-case 60 -o mesh.ply\n"
+                      "spillway triangulate -q points.npy --dim {} --leaf-points 60 -o mesh.ply\n"
                       "spillway check -q mesh.ply --points points.npy",
                       family, dimension_option(family, dimension), dimension));
     }
@@ -318,4 +318,4 @@ TEST(Generate, NoBytesForATerminal) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

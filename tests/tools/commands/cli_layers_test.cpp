@@ -10,14 +10,14 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-class GeoPackage : public testing::Test {
+class GeoPackage : public ::testing::Test {
  protected:
   GeoPackage() {
     GDALAllRegister();
@@ -89,4 +89,4 @@ TEST_F(GeoPackage, WhatIsNoneIsReplacedWithoutAWord) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

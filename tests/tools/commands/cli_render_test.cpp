@@ -14,7 +14,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/halved_box.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -139,11 +139,11 @@ TEST(Render, OfHeadersThatAreFalseIsThatOfThePoints) {
   halve_box(work, "t_04_04.las");
   for (const std::string options :
        {"--zoom 500020,4100065,500350,4100280 --wireframe", "--dim 3"}) {
-    const std::string run = "spillway render t_*.las --tile 2000 --size 200 " + options;
+    const std::string run = "spillway render t_*.las --tile-points 2000 --size 200 " + options;
     const Result again = work.run(run + " -o again.png");
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_THAT(again.err, HasSubstr("all points are read again")) << options;
-    work.succeed(run + " -q --distrust-headers -o late.png");
+    work.succeed(run + " -q --no-trust-headers -o late.png");
     EXPECT_EQ(work.read("again.png"), work.read("late.png")) << options;
   }
 }
@@ -183,7 +183,8 @@ TEST(Render, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
       "spillway triangulate -q in.las -o tin.ply\n"
       "spillway render -q in.las -o one.png --wireframe --threads 1\n"
       "spillway render -q in.las -o two.png --wireframe --threads 2\n"
-      "spillway render -q in.las -o tiles.png --wireframe --threads 2 --tile 2000 --base-case 300\n"
+      "spillway render -q in.las -o tiles.png --wireframe --threads 2 --tile-points 2000 "
+      "--leaf-points 300\n"
       "spillway render -q - -o pipe.png --wireframe < in.las\n"
       "spillway render -q in.las -o - --wireframe > out.png\n"
       "spillway render -q tin.spm -o spm.png --wireframe\n"
@@ -346,8 +347,7 @@ constexpr std::array kRefused = {
     Refused{"HullWithExaggeration", "points.txt --dim 3 -o view.png --exaggerate 2", 2,
             "heights are exaggerated of terrains"},
     Refused{"ViewFromBelowTheFeet", "points.txt --dim 3 -o view.png --view 30,91", 2, "--view"},
-    Refused{"DuplicatesInSpace", "points.txt --dim 3 -o view.png --duplicates lowest", 2,
-            "--duplicates"},
+    Refused{"DuplicatesInSpace", "points.txt --dim 3 -o view.png --heights lowest", 2, "--heights"},
     Refused{"EverythingTooLong", "points.txt -o view.png --max-edge 0.01", 1, "nothing is left"},
     Refused{"FilteredMesh", "tin.obj -o view.png --every 2", 2, "--every has no effect"},
     Refused{"MissingInput", "nowhere.las -o view.png", 1, "nowhere.las"},
@@ -376,4 +376,4 @@ TEST(RenderFaults, AFileThatMayNotGrowIsAnErrorAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -13,10 +13,10 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 nlohmann::json stats_of(const Workspace& work) {
   return nlohmann::json::parse(work.read("stats.json"));
@@ -57,7 +57,7 @@ TEST(Triangulate, SaysWhatTheThirdColumnOfNpyIsTakenForUnlessDimIsGiven) {
   EXPECT_THAT(said("- --input-format npy < in.npy"), HasSubstr(notice));
   for (const std::string arguments :
        {"in.npy --dim 2", "in.npy --dim 3", "in.npy -q", "flat.npy", "in.txt"}) {
-    EXPECT_THAT(said(arguments), testing::Not(HasSubstr(notice))) << arguments;
+    EXPECT_THAT(said(arguments), ::testing::Not(HasSubstr(notice))) << arguments;
   }
 }
 
@@ -65,7 +65,7 @@ TEST(Triangulate, OutputBytesDoNotDependOnThreads) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 20000 -o in.las\n"
-      "for t in 1 2 4; do spillway triangulate -q in.las -o $t.ply --threads $t --base-case 500; "
+      "for t in 1 2 4; do spillway triangulate -q in.las -o $t.ply --threads $t --leaf-points 500; "
       "done\n"
       "cmp 1.ply 2.ply; cmp 1.ply 4.ply");
 }
@@ -75,7 +75,7 @@ TEST(Triangulate, TetrahedraDoNotDependOnThreads) {
   work.succeed(
       "spillway generate -q uniform -n 4000 --dim 3 -o in.npy\n"
       "for t in 1 2 4; do spillway triangulate -q in.npy --dim 3 -o $t.ply --threads $t "
-      "--base-case 500; done\n"
+      "--leaf-points 500; done\n"
       "cmp 1.ply 2.ply; cmp 1.ply 4.ply");
 }
 
@@ -84,8 +84,8 @@ TEST(Triangulate, HashDoesNotDependOnHowTheWorkIsDivided) {
   work.succeed("spillway generate -q lattice -n 10000 -o in.las");
   std::string hash;
   for (const std::string options :
-       {"", "--base-case 50", "--base-case 300 --division cycling",
-        "--base-case 300 --division constant", "--base-case 100 --children 8"}) {
+       {"", "--leaf-points 50", "--leaf-points 300 --division cycling",
+        "--leaf-points 300 --division constant", "--leaf-points 100 --children 8"}) {
     work.succeed("spillway triangulate -q in.las -o mesh.ply --stats stats.json " + options);
     const std::string this_hash = stats_of(work)["canonical_hash"];
     if (hash.empty()) hash = this_hash;
@@ -164,11 +164,11 @@ TEST(Triangulate, DuplicatesKeepTheHeightThatIsAskedFor) {
   const std::vector<std::pair<std::string, double>> cases = {
       {"first", 5}, {"lowest", 2}, {"highest", 11}, {"mean", 6}};
   for (const auto& [choice, height] : cases) {
-    const std::string obj = work.succeed(
-        "spillway triangulate -q in.txt -o - --output-format obj --duplicates " + choice);
+    const std::string obj =
+        work.succeed("spillway triangulate -q in.txt -o - --output-format obj --heights " + choice);
     const auto heights = heights_of(obj);
     EXPECT_EQ(heights.size(), 4U);
-    EXPECT_THAT(heights, testing::UnorderedElementsAre(height, 0, 0, 0)) << choice;
+    EXPECT_THAT(heights, ::testing::UnorderedElementsAre(height, 0, 0, 0)) << choice;
   }
 }
 
@@ -176,7 +176,7 @@ TEST(Triangulate, MeanHeightsOffTheLatticePassTheCheck) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 5000 -o in.las\n"
-      "spillway triangulate -q in.las -o mesh.ply --duplicates mean\n"
+      "spillway triangulate -q in.las -o mesh.ply --heights mean\n"
       "spillway check -q mesh.ply --points in.las");
 }
 
@@ -187,9 +187,8 @@ TEST(Triangulate, IdIsTheIndexOfThePointThatGaveTheHeight) {
       {"first", "0"}, {"lowest", "4"}, {"highest", "5"}};
   for (const auto& [choice, index] : cases) {
     const std::string ply = work.succeed(
-        "spillway triangulate -q in.txt -o - --output-format ply-ascii --id --duplicates " +
-        choice);
-    EXPECT_THAT(ply, testing::ContainsRegex("\n0 0 [0-9]+ " + index + "\n")) << ply;
+        "spillway triangulate -q in.txt -o - --output-format ply-ascii --id --heights " + choice);
+    EXPECT_THAT(ply, ::testing::ContainsRegex("\n0 0 [0-9]+ " + index + "\n")) << ply;
   }
 }
 
@@ -223,7 +222,7 @@ TEST(Triangulate, StatsHaveTheirDocumentedKeys) {
   const Workspace work;
   work.succeed(
       "spillway generate -q terrain -n 5000 -o in.las\n"
-      "spillway triangulate -q in.las -o mesh.ply --stats stats.json --base-case 500");
+      "spillway triangulate -q in.las -o mesh.ply --stats stats.json --leaf-points 500");
   const auto stats = stats_of(work);
   for (const char* key :
        {"version", "dimension", "threads", "inputs", "output", "output_format", "on_lattice",
@@ -249,7 +248,7 @@ TEST(Triangulate, TasksAreALineForEachNodeChildrenFirst) {
   work.succeed(
       "spillway generate -q terrain -n 20000 -o in.las\n"
       "spillway triangulate -q in.las -o mesh.ply --stats stats.json --tasks tasks.jsonl "
-      "--tile 2000 --base-case 500");
+      "--tile-points 2000 --leaf-points 500");
   std::istringstream lines(work.read("tasks.jsonl"));
   std::set<int> waiting;
   int tiles = 0;
@@ -291,7 +290,7 @@ TEST(Triangulate, SimulatedCoresAreATableAndInTheStats) {
   const Workspace work;
   work.succeed("spillway generate -q uniform -n 5000 -o in.npy");
   const Result result = work.run(
-      "spillway triangulate in.npy -o mesh.ply --base-case 200 --simulate-cores 1,2,...,16 "
+      "spillway triangulate in.npy -o mesh.ply --leaf-points 200 --simulate-cores 1,2,...,16 "
       "--stats stats.json");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("speed-up"));
@@ -310,7 +309,7 @@ TEST(Triangulate, SimulatedRunsMayBeLargerAndWaitForADisk) {
   const Workspace work;
   work.succeed("spillway generate -q terrain -n 20000 -o in.las");
   work.succeed(
-      "spillway triangulate -q in.las -o a.spm --tile 3000 --simulate-cores 64 "
+      "spillway triangulate -q in.las -o a.spm --tile-points 3000 --simulate-cores 64 "
       "--simulate-points 1e5 --simulate-disk 1M --stats stats.json");
   EXPECT_EQ(stats_of(work)["simulated_points"], 100000);
   const auto run = stats_of(work)["simulated"][0];
@@ -361,12 +360,12 @@ TEST(CliTriangulate, MaxEdgeMayLeaveOutNearlyEverything) {
   const Workspace space;
   space.succeed("spillway generate uniform -n 20000 --seed 3 -o p.spp");
   for (const std::string length : {"0.001", "0.002", "0.004", "0.008"}) {
-    space.succeed("spillway triangulate p.spp -o m.spm --base-case 500 --max-edge " + length);
-    space.succeed("spillway triangulate p.spp -o m.ply --base-case 500 --max-edge " + length);
+    space.succeed("spillway triangulate p.spp -o m.spm --leaf-points 500 --max-edge " + length);
+    space.succeed("spillway triangulate p.spp -o m.ply --leaf-points 500 --max-edge " + length);
     EXPECT_EQ(space.info("m.spm")["simplices"], space.info("m.ply")["simplices"]) << length;
     EXPECT_EQ(space.info("m.spm")["vertices"], 20000) << length;
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -60,11 +60,11 @@ TEST(VertexAttributes, AreThoseOfThePointWhoseHeightAVertexHas) {
   const Workspace work;
   write_numbered_points(work, 4000);
   for (const char* choice : {"first", "lowest", "highest", "mean"}) {
-    for (const char* how : {"", "--tile 300 --base-case 60 --memory 32M", "--threads 1"}) {
+    for (const char* how : {"", "--tile-points 300 --leaf-points 60 --memory 32M", "--threads 1"}) {
       SCOPED_TRACE(fmt::format("{} {}", choice, how));
       work.succeed(
           fmt::format("spillway triangulate -q in.csv -o m.ply --output-format ply-ascii --id "
-                      "--attributes all --duplicates {} {}",
+                      "--attributes all --heights {} {}",
                       choice, how));
       expect_numbers_are_indices(work, "m.ply");
     }
@@ -145,4 +145,4 @@ TEST(VertexAttributes, ThatAFormatDoesNotHoldAreNamed) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

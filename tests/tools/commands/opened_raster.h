@@ -10,7 +10,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 /// A raster as GDAL reads it.
 class OpenedRaster {
@@ -47,4 +47,4 @@ class OpenedRaster {
   GDALDatasetUniquePtr file_;
 };
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -8,13 +8,13 @@
 #include "tests/formats/points/copc/encoded_files.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::copc_bytes;
-using testing::EncodedPoints;
-using testing::laz_bytes;
-using testing::read_points_to_encode;
+using test::copc_bytes;
+using test::EncodedPoints;
+using test::laz_bytes;
+using test::read_points_to_encode;
 
 class Encoded : public ::testing::Test {
  protected:
@@ -27,7 +27,7 @@ class Encoded : public ::testing::Test {
   }
 
   [[nodiscard]] nlohmann::json triangulate(const std::string& arguments) const {
-    work_.succeed("spillway triangulate -q --tile 2000 -o mesh.spm --stats stats.json " +
+    work_.succeed("spillway triangulate -q --tile-points 2000 -o mesh.spm --stats stats.json " +
                   arguments);
     return nlohmann::json::parse(work_.read("stats.json"));
   }
@@ -35,7 +35,7 @@ class Encoded : public ::testing::Test {
   /// These files are triangulated early; the mesh is that of all their points read first.
   void expect_early(const std::string& files, int points) const {
     const nlohmann::json early = triangulate(files);
-    const nlohmann::json late = triangulate(files + " --distrust-headers");
+    const nlohmann::json late = triangulate(files + " --no-trust-headers");
     EXPECT_EQ(early["points"], points);
     EXPECT_LT(early["first_block_read_points"], points * 9 / 10);
     EXPECT_EQ(late["first_block_read_points"], points);
@@ -73,4 +73,4 @@ TEST_F(Encoded, LazFilesOfASurveyAreTriangulatedEarly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

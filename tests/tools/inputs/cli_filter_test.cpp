@@ -9,7 +9,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/inputs/las_samples.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -84,7 +84,7 @@ TEST_F(Filters, WhereNoClassIsKeptThoseThatThereAreAreNamed) {
   const std::string message = "3000 points read, 3000 of other classes (0-4), 0 kept";
   for (const std::string command :
        {"triangulate in.las -o a.ply", "convert in.las -o a.spp --sorted",
-        "triangulate in.las -o a.ply --memory 32M --distrust-headers", "convert in.las -o a.las"}) {
+        "triangulate in.las -o a.ply --memory 32M --no-trust-headers", "convert in.las -o a.las"}) {
     const Result result = work_.run("spillway " + command + " --keep-class 6,9");
     EXPECT_THAT(result.err, HasSubstr(message)) << command;
   }
@@ -140,7 +140,7 @@ TEST_F(Filters, AMeshOfThinnedPointsHasTheSameBytesWhereTheyWereThinnedOnTheDisk
   // for fewer cells than there are.
   work_.succeed("spillway generate -q terrain -n 120000 -o in.las");
   const std::string command =
-      "spillway triangulate -q --thin 0.1:lowest --tile 5000 --base-case 500 ";
+      "spillway triangulate -q --thin 0.1:lowest --tile-points 5000 --leaf-points 500 ";
   work_.succeed(command + "in.las -o much.spm --memory 1G && " + command +
                 "in.las -o little.spm --memory 32M --threads 1 --stats little.json && " + command +
                 "- -o pipe.spm --memory 32M < in.las && cmp much.spm little.spm && "
@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(Cli, WrongFilter,
                                            "--bounds 0,0,nan,1", "--bounds 0,0,0,1,1", "--every 0",
                                            "--every x", "--thin 0", "--thin -1", "--thin 1:last",
                                            "--thin 1:first:2", "--thin inf", "--resolution 0",
-                                           "--dim 3 --duplicates lowest"));
+                                           "--dim 3 --heights lowest"));
 
 TEST(SharedData, GroundOfAutzen) {
   const std::string path = shared_file("autzen_trim.las").string();
@@ -254,4 +254,4 @@ TEST(SharedData, GroundOfAutzen) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -12,7 +12,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -98,7 +98,7 @@ TEST_F(Salvage, TriangulationsCountWhatIsLost) {
 TEST_F(Salvage, OfManyFilesOnlyTheOneThatIsCutOffLosesPoints) {
   const std::string files = "cut_all.las all_14.laz cut_all_12.laz";
   salvage("triangulate --id " + files + " -o mesh.ply", "cut_all.las");
-  salvage("triangulate " + files + " -o late.ply --distrust-headers", "cut_all.las");
+  salvage("triangulate " + files + " -o late.ply --no-trust-headers", "cut_all.las");
   EXPECT_EQ(work_.info("mesh.ply")["canonical_hash"], work_.info("late.ply")["canonical_hash"]);
 }
 
@@ -213,4 +213,4 @@ TEST_F(SkipBroken, AJobOfABatchThatLeavesOutAFileHasFailed) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/tools/inputs/halved_box.h"
 #include "tests/tools/inputs/las_samples.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -31,7 +31,7 @@ class Survey : public ::testing::Test {
   }
 
   nlohmann::json triangulate(const std::string& arguments) {
-    work_.succeed("spillway triangulate -q --tile 2000 -o mesh.spm --stats stats.json " +
+    work_.succeed("spillway triangulate -q --tile-points 2000 -o mesh.spm --stats stats.json " +
                   arguments);
     work_.succeed("spillway check -q mesh.spm");
     return nlohmann::json::parse(work_.read("stats.json"));
@@ -54,10 +54,10 @@ class Survey : public ::testing::Test {
   }
   /// The header of one file tells half of what it should.
   void halve_box(std::size_t axis = 0) { test::halve_box(work_, "t_04_04.las", axis); }
-  /// The figures of a run whose headers turn out to be false.
+  /// The statistics of a run whose headers turn out to be false.
   nlohmann::json triangulate_again(const std::string& arguments) {
-    const Result result =
-        work_.run("spillway triangulate --tile 2000 -o mesh.spm --stats stats.json " + arguments);
+    const Result result = work_.run(
+        "spillway triangulate --tile-points 2000 -o mesh.spm --stats stats.json " + arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     messages_ = result.err;
     work_.succeed("spillway check -q mesh.spm");
@@ -97,7 +97,7 @@ TEST_F(Survey, TakesOneFileThatCoversAllAndEmptyOnes) {
       "spillway convert -q all.las --every 10 -o tenth.las");
   const nlohmann::json survey = triangulate("empty.las t_*.las tenth.las");
   EXPECT_TRUE(is_early(survey));
-  const nlohmann::json late = triangulate("t_*.las tenth.las --distrust-headers");
+  const nlohmann::json late = triangulate("t_*.las tenth.las --no-trust-headers");
   EXPECT_FALSE(is_early(late));
   EXPECT_EQ(survey["canonical_hash"], late["canonical_hash"]);
   EXPECT_EQ(survey["duplicates"], late["duplicates"]);
@@ -107,9 +107,9 @@ TEST_F(Survey, TakesOneFileThatCoversAllAndEmptyOnes) {
 TEST_F(Survey, GivesVerticesTheSameHeightsAsWhenAllIsReadFirst) {
   for (const std::string choice : {"first", "lowest", "highest", "mean"}) {
     const std::string arguments =
-        "$(ls -r t_*.las) t_*.las all.las -q --tile 2000 --duplicates " + choice;
+        "$(ls -r t_*.las) t_*.las all.las -q --tile-points 2000 --heights " + choice;
     work_.succeed("spillway triangulate -o early.obj " + arguments +
-                  " && spillway triangulate --distrust-headers -o late.obj " + arguments);
+                  " && spillway triangulate --no-trust-headers -o late.obj " + arguments);
     EXPECT_EQ(work_.succeed("grep ^v early.obj | sort | md5sum"),
               work_.succeed("grep ^v late.obj | sort | md5sum"))
         << choice;
@@ -121,8 +121,8 @@ TEST_F(Survey, FiltersAndNumbersPointsAsOneFileDoes) {
   EXPECT_EQ(triangulate(box + "t_*.las")["canonical_hash"],
             triangulate(box + "all.las")["canonical_hash"]);
   work_.succeed(
-      "spillway triangulate t_*.las -q --id --tile 2000 -o early.npy && "
-      "spillway triangulate t_*.las -q --id --tile 2000 --distrust-headers -o late.npy");
+      "spillway triangulate t_*.las -q --id --tile-points 2000 -o early.npy && "
+      "spillway triangulate t_*.las -q --id --tile-points 2000 --no-trust-headers -o late.npy");
   EXPECT_EQ(work_.info("early.npy")["canonical_hash"], work_.info("late.npy")["canonical_hash"]);
 }
 
@@ -137,7 +137,7 @@ TEST_F(Survey, BeginsAgainWhereAPointLiesOutsideOfItsHeadersBox) {
     EXPECT_EQ(again["points"], 40'000);
     EXPECT_EQ(again["first_block_read_points"], 40'000);
     EXPECT_FALSE(work_.has_unfinished("mesh.spm"));
-    EXPECT_EQ(triangulate("t_*.las --distrust-headers")["canonical_hash"], truth["canonical_hash"]);
+    EXPECT_EQ(triangulate("t_*.las --no-trust-headers")["canonical_hash"], truth["canonical_hash"]);
     lie("t_04_04.las", axis, bounds.least, bounds.most);
   }
 }
@@ -166,7 +166,7 @@ TEST_F(Survey, CountsNothingTwiceWhenItBeginsAgain) {
   for (const std::string filter :
        {"--every 3", "--keep-class 0", "--id", "--bounds 500020,4100065,500350,4100280"}) {
     const nlohmann::json again = triangulate_again("t_*.las " + filter);
-    const nlohmann::json late = triangulate("t_*.las --distrust-headers " + filter);
+    const nlohmann::json late = triangulate("t_*.las --no-trust-headers " + filter);
     for (const char* key : {"canonical_hash", "points", "duplicates", "vertices", "simplices",
                             "filters", "tiles", "leaves", "spilled_points"}) {
       EXPECT_EQ(again[key], late[key]) << filter << " " << key;
@@ -188,7 +188,7 @@ TEST_F(Survey, SaysInItsTasksWhereItBeginsAgain) {
 TEST_F(Survey, EndsEachPhaseBeforeItBeginsAgain) {
   halve_box();
   const std::string lines =
-      work_.run("spillway triangulate --tile 2000 t_*.las -o mesh.spm --progress json").err;
+      work_.run("spillway triangulate --tile-points 2000 t_*.las -o mesh.spm --progress json").err;
   std::vector<std::string> phases;
   std::istringstream stream(lines);
   for (std::string line; std::getline(stream, line);) {
@@ -204,7 +204,7 @@ TEST_F(Survey, LeavesOneFileOfEachFormatWhenItBeginsAgain) {
   const std::size_t before = work_.names().size();
   for (const std::string format : {"ply", "obj", "vtu", "sma", "glb"}) {
     const std::string run =
-        "spillway triangulate -q --tile 2000 --tmpdir . t_*.las -o mesh." + format;
+        "spillway triangulate -q --tile-points 2000 --scratch-folder . t_*.las -o mesh." + format;
     work_.succeed(run);
     EXPECT_EQ(work_.names().size(), before + 1) << format;
     work_.succeed("spillway check -q mesh." + format + " && rm mesh." + format);
@@ -214,20 +214,21 @@ TEST_F(Survey, LeavesOneFileOfEachFormatWhenItBeginsAgain) {
 TEST_F(Survey, AFalseBoxIsAnErrorWhereTheMeshHasLeftThroughAPipe) {
   halve_box();
   for (const std::string format : {"spm", "ply"}) {
-    const Result lying = work_.run(
-        "spillway triangulate t_*.las --tile 2000 -o - --output-format " + format + " >piped");
+    const Result lying =
+        work_.run("spillway triangulate t_*.las --tile-points 2000 -o - --output-format " + format +
+                  " >piped");
     EXPECT_EQ(lying.exit_code, 1);
     EXPECT_THAT(lying.err, AllOf(HasSubstr("t_04_04.las: point "), HasSubstr(kFalse),
-                                 HasSubstr("--distrust-headers"), Not(HasSubstr("again"))));
+                                 HasSubstr("--no-trust-headers"), Not(HasSubstr("again"))));
   }
 }
 
 TEST_F(Survey, AFalseBoxIsAnErrorWhereAnInputIsAPipe) {
   halve_box();
-  const Result lying =
-      work_.run("spillway triangulate t_0[0-5]*.las - --tile 2000 -o mesh.spm < t_06_06.las");
+  const Result lying = work_.run(
+      "spillway triangulate t_0[0-5]*.las - --tile-points 2000 -o mesh.spm < t_06_06.las");
   EXPECT_EQ(lying.exit_code, 1);
-  EXPECT_THAT(lying.err, AllOf(HasSubstr(kFalse), HasSubstr("--distrust-headers")));
+  EXPECT_THAT(lying.err, AllOf(HasSubstr(kFalse), HasSubstr("--no-trust-headers")));
   EXPECT_FALSE(work_.has("mesh.spm"));
   EXPECT_FALSE(work_.has_unfinished("mesh.spm"));
 }
@@ -238,7 +239,7 @@ TEST_F(Survey, ABoxThatIsAStepOffIsNotFalse) {
   const Bounds bounds = bounds_of("t_04_04.las", 0);
   for (const double off : {0.009, 0.01}) {
     lie("t_04_04.las", 0, bounds.least + off, bounds.most - off);
-    const Result survey = work_.run("spillway triangulate t_*.las --tile 2000 -o mesh.spm");
+    const Result survey = work_.run("spillway triangulate t_*.las --tile-points 2000 -o mesh.spm");
     EXPECT_EQ(survey.exit_code, 0) << survey.err;
     EXPECT_THAT(survey.err, Not(HasSubstr(kFalse))) << off;
     EXPECT_EQ(work_.info("mesh.spm")["canonical_hash"], truth["canonical_hash"]);
@@ -273,7 +274,7 @@ TEST_F(Survey, TakesManyFilesThatAllCoverOnePlace) {
   work_.succeed("spillway convert -q p_*.las -o place.las");
   const nlohmann::json place = triangulate("place.las");
   EXPECT_GT(place["points"], 10'000);
-  for (const std::string files : {"p_*.las", "$(ls -r p_*.las)", "p_*.las --distrust-headers"}) {
+  for (const std::string files : {"p_*.las", "$(ls -r p_*.las)", "p_*.las --no-trust-headers"}) {
     EXPECT_EQ(triangulate(files)["canonical_hash"], place["canonical_hash"]) << files;
   }
   work_.succeed("spillway convert -q p_*.las t_*.las -o together.las");
@@ -294,9 +295,10 @@ TEST_F(Survey, PipesAmongFilesAreReadInTheirTurn) {
 TEST_F(Survey, ContoursAreThoseOfAllPoints) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   work_.succeed(
-      "spillway contour t_*.las -q --tile 2000 --interval 5 -o early.geojson --force-crs --stats "
+      "spillway contour t_*.las -q --tile-points 2000 --interval 5 -o early.geojson --force-crs "
+      "--stats "
       "stats.json && "
-      "spillway contour t_*.las -q --distrust-headers --interval 5 -o late.geojson --force-crs");
+      "spillway contour t_*.las -q --no-trust-headers --interval 5 -o late.geojson --force-crs");
   EXPECT_TRUE(is_early(nlohmann::json::parse(work_.read("stats.json"))));
   const auto lines = [&](const std::string& name) {
     std::vector<std::string> all;
@@ -308,8 +310,8 @@ TEST_F(Survey, ContoursAreThoseOfAllPoints) {
   EXPECT_FALSE(lines("late.geojson").empty());
   EXPECT_EQ(lines("early.geojson"), lines("late.geojson"));
   halve_box();
-  const Result again =
-      work_.run("spillway contour t_*.las --tile 2000 --interval 5 -o again.geojson --force-crs");
+  const Result again = work_.run(
+      "spillway contour t_*.las --tile-points 2000 --interval 5 -o again.geojson --force-crs");
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(times(kFalse, again.err), 1);
   EXPECT_EQ(times("written as they are", again.err), 1);
@@ -317,4 +319,4 @@ TEST_F(Survey, ContoursAreThoseOfAllPoints) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -81,4 +81,4 @@ TEST_F(Table, RowsThatAreNoPointsAreLeftOutAndCountedOnDemand) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

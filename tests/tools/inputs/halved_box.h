@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 /// Makes the header of a LAS file tell other bounds along an axis.
 inline void tell_bounds(const Workspace& work, const std::string& name, std::size_t axis,
@@ -28,4 +28,4 @@ inline void halve_box(const Workspace& work, const std::string& name, std::size_
   tell_bounds(work, name, axis, least, (least + most) / 2);
 }
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

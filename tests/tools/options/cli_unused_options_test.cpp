@@ -7,13 +7,13 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 struct Unused {
   const char* name;
@@ -36,7 +36,7 @@ void make_inputs(const Workspace& work) {
   if (!build_lacks("GDAL")) work.succeed("spillway dem -q in.las --resolution 20 -o like.tif");
 }
 
-class UnusedOption : public testing::TestWithParam<Unused> {};
+class UnusedOption : public ::testing::TestWithParam<Unused> {};
 
 TEST_P(UnusedOption, IsRefusedWithoutOutput) {
   const Workspace work;
@@ -50,15 +50,15 @@ TEST_P(UnusedOption, IsRefusedWithoutOutput) {
   EXPECT_EQ(work.names(), names);
 }
 
-std::string name_of(const testing::TestParamInfo<Unused>& info) { return info.param.name; }
+std::string name_of(const ::testing::TestParamInfo<Unused>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(
     Triangulate, UnusedOption,
-    testing::Values(
-        Unused{"DuplicatesInSpace", "triangulate space.npy --dim 3 -o a.spm --duplicates first",
-               "--duplicates has no effect with --dim 3"},
-        Unused{"DuplicatesOfFlatPoints", "triangulate flat.txt -o a.spm --duplicates highest",
-               "--duplicates has no effect on points without z"},
+    ::testing::Values(
+        Unused{"DuplicatesInSpace", "triangulate space.npy --dim 3 -o a.spm --heights first",
+               "--heights has no effect with --dim 3"},
+        Unused{"DuplicatesOfFlatPoints", "triangulate flat.txt -o a.spm --heights highest",
+               "--heights has no effect on points without z"},
         Unused{"ThinningByHeightOfFlatPoints", "triangulate flat.txt -o a.spm --thin 1:lowest",
                "the points have no z to thin them by"},
         Unused{"Parts", "triangulate in.las -o a.spm --parts", "start it with mpirun"},
@@ -72,15 +72,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Dem, UnusedOption,
-    testing::Values(
-        Unused{"DuplicatesOfAMesh", "dem tin.ply -o a.tif --resolution 5 --duplicates highest",
-               "--duplicates has no effect on tin.ply, which is a mesh: leave it out"},
-        Unused{
-            "DivisionOfAMesh",
-            "dem tin.spm -o a.tif --resolution 5 --tile 9 --base-case 9 --division cycling "
-            "--children 3 --kernel cgal",
-            "--base-case, --tile, --division, --children and --kernel have no effect on tin.spm, "
-            "which is a mesh: leave them out"},
+    ::testing::Values(
+        Unused{"DuplicatesOfAMesh", "dem tin.ply -o a.tif --resolution 5 --heights highest",
+               "--heights has no effect on tin.ply, which is a mesh: leave it out"},
+        Unused{"DivisionOfAMesh",
+               "dem tin.spm -o a.tif --resolution 5 --tile-points 9 --leaf-points 9 --division "
+               "cycling "
+               "--children 3 --kernel cgal",
+               "--leaf-points, --tile-points, --division, --children and --kernel have no effect "
+               "on tin.spm, "
+               "which is a mesh: leave them out"},
         Unused{"FiltersOfAMesh",
                "dem tin.ply -o a.tif --resolution 5 --keep-withheld --every 2 --keep-class 2 "
                "--drop-class 3 --returns last --thin 3",
@@ -104,15 +105,15 @@ INSTANTIATE_TEST_SUITE_P(
                "dem in.las -o a.tif --resolution 5 --product density --max-edge 9",
                "--max-edge has no effect on density"},
         Unused{"DuplicatesOfDensity",
-               "dem in.las -o a.tif --resolution 5 --product density --duplicates mean",
-               "--duplicates has no effect on density"},
+               "dem in.las -o a.tif --resolution 5 --product density --heights mean",
+               "--heights has no effect on density"},
         Unused{"GridWithLike", "dem in.las -o a.tif --like like.tif --resolution 3 --align",
                "--resolution and --align have no effect with --like"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Contour, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{"BaseWithLevels", "contour in.las -o a.gpkg --levels 380 --base 0",
                "--base has no effect with --levels"},
         Unused{"IntervalWithLevels", "contour in.las -o a.gpkg --levels 380 --interval 5",
@@ -120,20 +121,20 @@ INSTANTIATE_TEST_SUITE_P(
         Unused{"DimensionThereIsNot", "contour tin.ply -o a.gpkg --levels 380 --dim 3",
                "contour has no option --dim"},
         Unused{"PointOptionsOfAMesh",
-               "contour tin.spm -o a.gpkg --levels 380 --duplicates lowest --force-crs "
+               "contour tin.spm -o a.gpkg --levels 380 --heights lowest --force-crs "
                "--bounds 0,0,1,1 --resolution 3",
-               "--force-crs, --bounds, --resolution and --duplicates have no effect on tin.spm"}),
+               "--force-crs, --bounds, --resolution and --heights have no effect on tin.spm"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Render, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{"DimensionOfAMesh", "render tin.spm -o a.png --dim 2",
                "--dim has no effect on tin.spm, which is a mesh"},
-        Unused{"DuplicatesOfAMesh", "render tin.ply -o a.png --duplicates lowest",
-               "--duplicates has no effect on tin.ply"},
-        Unused{"DuplicatesInSpace", "render space.npy --dim 3 -o a.png --duplicates lowest",
-               "--duplicates has no effect with --dim 3"},
+        Unused{"DuplicatesOfAMesh", "render tin.ply -o a.png --heights lowest",
+               "--heights has no effect on tin.ply"},
+        Unused{"DuplicatesInSpace", "render space.npy --dim 3 -o a.png --heights lowest",
+               "--heights has no effect with --dim 3"},
         Unused{"FiltersOfAMesh", "render space.vtu -o a.png --every 3 --bounds 0,0,1,1",
                "--every and --bounds have no effect on space.vtu"},
         Unused{"WireframeOfASlice", "render space.npy --dim 3 -o a.png --slice z=0.5 --wireframe",
@@ -149,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Info, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{"FilterOfAMesh", "info tin.ply --keep-class 2",
                "--keep-class has no effect on tin.ply, which is a mesh"},
         Unused{"FilterOfMeshes", "info tin.ply tin.spm --every 2",
@@ -162,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Check, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{"FilterWithoutPoints", "check tin.ply --keep-class 2",
                "--keep-class has no effect without --points"},
         Unused{"InputOptionsWithoutPoints",
@@ -172,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Convert, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{
             "PointOptionsOfAMesh",
             "convert tin.ply -o a.obj --force-crs --keep-withheld --every 2 --scale 1 --offset 0 "
@@ -189,22 +190,22 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Generate, UnusedOption,
-    testing::Values(Unused{"DimensionOfTerrain", "generate terrain -n 9 --dim 3 -o a.las",
-                           "--dim has no effect on terrain"},
-                    Unused{"SeedOfALattice", "generate lattice -n 9 --seed 2 -o a.las",
-                           "--seed has no effect on lattice"},
-                    Unused{"OverlapWithoutGrid", "generate terrain -n 9 --overlap 0.1 -o a.las",
-                           "--overlap has no effect without --grid"},
-                    Unused{"LasVersionOfATextGrid",
-                           "generate terrain -n 9 --grid 2x2 -o a#.txt --las-version 1.2",
-                           "--las-version is for LAS"},
-                    Unused{"LasVersionOfText", "generate terrain -n 9 -o a.txt --las-version 1.2",
-                           "--las-version is for LAS"}),
+    ::testing::Values(Unused{"DimensionOfTerrain", "generate terrain -n 9 --dim 3 -o a.las",
+                             "--dim has no effect on terrain"},
+                      Unused{"SeedOfALattice", "generate lattice -n 9 --seed 2 -o a.las",
+                             "--seed has no effect on lattice"},
+                      Unused{"OverlapWithoutGrid", "generate terrain -n 9 --overlap 0.1 -o a.las",
+                             "--overlap has no effect without --grid"},
+                      Unused{"LasVersionOfATextGrid",
+                             "generate terrain -n 9 --grid 2x2 -o a#.txt --las-version 1.2",
+                             "--las-version is for LAS"},
+                      Unused{"LasVersionOfText", "generate terrain -n 9 -o a.txt --las-version 1.2",
+                             "--las-version is for LAS"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     Batch, UnusedOption,
-    testing::Values(
+    ::testing::Values(
         Unused{"AzimuthWithoutHillshade",
                "batch in.las --output-dir out --to dem.tif,slope.tif --resolution 9 --azimuth 9",
                "none of its outputs uses the option --azimuth"},
@@ -212,21 +213,21 @@ INSTANTIATE_TEST_SUITE_P(
                "batch in.las --output-dir out --to slope.tif --resolution 9 --product height",
                "none of its outputs uses the option --product"},
         Unused{"DuplicatesOfDensity",
-               "batch in.las --output-dir out --to density.tif --resolution 9 --duplicates mean",
-               "none of its outputs uses the option --duplicates"}),
+               "batch in.las --output-dir out --to density.tif --resolution 9 --heights mean",
+               "none of its outputs uses the option --heights"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
     NoOption, UnusedOption,
-    testing::Values(Unused{"BeforeTheInput", "triangulate --bogus in.las",
-                           "triangulate has no option --bogus"},
-                    Unused{"WithASuggestion", "triangulate in.las --duplicate first",
-                           "triangulate has no option --duplicate (did you mean --duplicates?)"},
-                    Unused{"WithAValue", "dem in.las --product=slope --resolutoin=5",
-                           "dem has no option --resolutoin (did you mean --resolution?)"},
-                    Unused{"Short", "triangulate in.las -x", "triangulate has no option -x (see"},
-                    Unused{"BeforeTheSubcommand", "--threads 2 triangulate in.las -o a.spm",
-                           "--threads is an option of triangulate: give it after that word"}),
+    ::testing::Values(Unused{"BeforeTheInput", "triangulate --bogus in.las",
+                             "triangulate has no option --bogus"},
+                      Unused{"WithASuggestion", "triangulate in.las --height first",
+                             "triangulate has no option --height (did you mean --heights?)"},
+                      Unused{"WithAValue", "dem in.las --product=slope --resolutoin=5",
+                             "dem has no option --resolutoin (did you mean --resolution?)"},
+                      Unused{"Short", "triangulate in.las -x", "triangulate has no option -x (see"},
+                      Unused{"BeforeTheSubcommand", "--threads 2 triangulate in.las -o a.spm",
+                             "--threads is an option of triangulate: give it after that word"}),
     name_of);
 
 TEST(UnusedOptions, OfABatchFailTheirJobOnly) {
@@ -250,9 +251,9 @@ TEST(UnusedOptions, OfABatchGoToTheStepsThatUseThem) {
   work.succeed(
       "spillway batch in.las --output-dir out --to dem.tif,hillshade.tif,density.tif --resolution "
       "9 "
-      "--azimuth 90 --max-edge 99 --duplicates lowest\n"
+      "--azimuth 90 --max-edge 99 --heights lowest\n"
       "spillway dem -q in.las --resolution 9 --product hillshade --azimuth 90 --max-edge 99 "
-      "--duplicates lowest -o light.tif\n"
+      "--heights lowest -o light.tif\n"
       "cmp light.tif out/in.hillshade.tif\n"
       "spillway batch in.las --output-dir like --to spm,dem.tif --like like.tif --force-crs");
 }
@@ -269,10 +270,10 @@ TEST(UnusedOptions, ThatHaveAnEffectOnSomeInputAreTaken) {
       "spillway dem -q tin.ply -o a.tif --like like.tif --force-crs\n"
       "spillway dem -q tin.ply -o b.tif --resolution 9 --bounds 500000,4100000,500100,4100100\n"
       "spillway dem -q tin.ply -o c.tif --resolution 9 --product density,slope --max-edge 9\n"
-      "spillway check -q tin.ply --memory 64M --tmpdir . --max-tmp 1G > report\n"
+      "spillway check -q tin.ply --memory 64M --scratch-folder . --max-tmp 1G > report\n"
       "spillway render -q tin.ply -o a.png --max-edge 99 --threads 1\n"
-      "spillway triangulate -q in.las flat.txt -o a.spm --duplicates highest");
+      "spillway triangulate -q in.las flat.txt -o a.spm --heights highest");
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -15,11 +15,11 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(Usage, HelpIsOnStandardOutputAtEveryLevel) {
   const Workspace work;
@@ -76,7 +76,7 @@ TEST(Usage, HelpHasWhatIsNeededFirstAndRareOptionsLast) {
     }
   };
   expect_order("triangulate", {"IN", "-o,--output", "--dim", "--crs", "--keep-class", "--threads",
-                               "--memory", "--progress", "--tile", "--simulate-cores"});
+                               "--memory", "--progress", "--tile-points", "--simulate-cores"});
   expect_order("dem", {"IN", "-o,--output", "--resolution", "--product", "--keep-class", "--memory",
                        "-q,--quiet", "--kernel"});
   expect_order("render", {"IN", "-o,--output", "--zoom", "--keep-class", "--memory", "--kernel"});
@@ -169,7 +169,7 @@ TEST(Usage, AnOptionWithAListLeavesTheInputAlone) {
   EXPECT_THAT(work.succeed("spillway batch --help"), HasSubstr("--to KIND,...  "));
 }
 
-class WrongCommandLine : public testing::TestWithParam<std::string> {};
+class WrongCommandLine : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(WrongCommandLine, IsOneLineAndExitCodeTwo) {
   const Workspace work;
@@ -183,12 +183,12 @@ TEST_P(WrongCommandLine, IsOneLineAndExitCodeTwo) {
 
 INSTANTIATE_TEST_SUITE_P(
     Cli, WrongCommandLine,
-    testing::Values(
+    ::testing::Values(
         "frobnicate", "triangulate", "triangulate in.txt", "triangulate -o x.ply",
         "triangulate in.txt -o x.ply --frobnicate", "triangulate in.txt -o x.ply --dim 4",
-        "triangulate in.txt -o x.nonsense", "triangulate in.txt -o x.ply --duplicates most",
+        "triangulate in.txt -o x.nonsense", "triangulate in.txt -o x.ply --heights most",
         "triangulate in.txt -o x.ply --max-edge 0", "triangulate in.txt -o x.ply --threads -1",
-        "triangulate in.txt -o x.ply --base-case -1", "triangulate in.txt -o x.ply --children 1",
+        "triangulate in.txt -o x.ply --leaf-points -1", "triangulate in.txt -o x.ply --children 1",
         "triangulate in.txt -o x.ply -q -v", "triangulate - - -o x.ply",
         "triangulate in.txt -o - --output-format obj --stats -",
         "triangulate in.txt -o x.ply --simulate-cores 0",
@@ -307,8 +307,8 @@ TEST(Usage, WhatIsWrongWithANumberIsSaidInAFewWords) {
   const auto error = [&](const std::string& arguments) {
     return work.run("spillway " + arguments).err;
   };
-  EXPECT_THAT(error("triangulate in.txt -o x.ply --tile -1"),
-              HasSubstr("error: --tile: \"-1\" is not a whole number of at least 0 (see"));
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --tile-points -1"),
+              HasSubstr("error: --tile-points: \"-1\" is not a whole number of at least 0 (see"));
   EXPECT_THAT(error("triangulate in.txt -o x.ply --children 1"),
               HasSubstr("error: --children: \"1\" is not a whole number from 2 to 1024 (see"));
   EXPECT_THAT(error("dem in.txt -o x.tif --resolution 1 --azimuth nan"),
@@ -316,8 +316,8 @@ TEST(Usage, WhatIsWrongWithANumberIsSaidInAFewWords) {
   EXPECT_THAT(error("contour in.txt -o x.gpkg --interval 0x10"),
               HasSubstr("error: --interval: \"0x10\" is not a number above 0 (see"));
   EXPECT_THAT(error("triangulate in.txt -o x.ply --thin ''"), HasSubstr("error: --thin: \"\" is"));
-  EXPECT_THAT(error("triangulate in.txt -o x.ply --tmpdir ''"),
-              HasSubstr("error: --tmpdir: the value is empty"));
+  EXPECT_THAT(error("triangulate in.txt -o x.ply --scratch-folder ''"),
+              HasSubstr("error: --scratch-folder: the value is empty"));
   EXPECT_THAT(error("contour in.txt -o x.gpkg --levels 1,,2"), HasSubstr("\"\" is not a number"));
 }
 
@@ -340,7 +340,7 @@ TEST(Completion, BashCompletesSubcommandsOptionsAndValues) {
                         std::to_string(current) + "; _spillway; echo \"${COMPREPLY[*]}\"'");
   };
   EXPECT_EQ(complete("spillway tri", 1), "triangulate\n");
-  EXPECT_EQ(complete("spillway triangulate --dup", 2), "--duplicates\n");
+  EXPECT_EQ(complete("spillway triangulate --hei", 2), "--heights\n");
   EXPECT_EQ(complete("spillway triangulate --dim \"\"", 3), "2 3\n");
   EXPECT_EQ(complete("spillway generate te", 2), "terrain\n");
   EXPECT_EQ(complete("spillway triangulate \"\"", 2), "\n");  // leaves files to the shell
@@ -373,4 +373,4 @@ TEST(Manual, GivesNoWarningsOfGroff) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Sets COLUMNS as long as it lives.
@@ -58,4 +58,4 @@ TEST(HelpLayout, ALongListOfWordsIsBrokenBetweenThem) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

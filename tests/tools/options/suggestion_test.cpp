@@ -5,25 +5,26 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-const std::vector<std::string> kOptions = {
-    "-h",       "--help", "-o",     "--output", "-q",      "--quiet", "--dim",   "--id",
-    "--bounds", "--tile", "--thin", "--memory", "--stats", "--crs",   "--every", "--duplicates"};
+const std::vector<std::string> kOptions = {"-h",       "--help",        "-o",      "--output",
+                                           "-q",       "--quiet",       "--dim",   "--id",
+                                           "--bounds", "--tile-points", "--thin",  "--memory",
+                                           "--stats",  "--crs",         "--every", "--heights"};
 
 std::string meant(const std::string& word) { return suggestion(word, kOptions); }
 
 TEST(Suggestion, IsWhatIsASlipAway) {
   EXPECT_EQ(meant("--boundz"), " (did you mean --bounds?)");
   EXPECT_EQ(meant("--quite"), " (did you mean --quiet?)") << "two letters that change places";
-  EXPECT_EQ(meant("--duplcates"), " (did you mean --duplicates?)");
+  EXPECT_EQ(meant("--tile-ponts"), " (did you mean --tile-points?)");
   EXPECT_EQ(meant("--dmi"), " (did you mean --dim?)");
   EXPECT_EQ(meant("--stat"), " (did you mean --stats?)");
 }
 
 TEST(Suggestion, LongWordsMayHaveMoreSlips) {
-  EXPECT_EQ(meant("--dupilcatse"), " (did you mean --duplicates?)");
+  EXPECT_EQ(meant("--tiel-piont"), " (did you mean --tile-points?)");
   EXPECT_EQ(meant("--memroi"), " (did you mean --memory?)");
 }
 
@@ -49,4 +50,4 @@ TEST(Suggestion, TakesSubcommandsToo) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -16,17 +16,17 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::IsEmpty;
+using ::testing::IsEmpty;
 
 void sleep_for(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
 /// A workspace with four files that take a while, and a folder for temporary ones.
-class InterruptedBatch : public testing::TestWithParam<int> {
+class InterruptedBatch : public ::testing::TestWithParam<int> {
  protected:
   InterruptedBatch() {
     space.succeed(
@@ -36,8 +36,14 @@ class InterruptedBatch : public testing::TestWithParam<int> {
 
   /// Two outputs of each, of which the mesh stream is in the temporary folder.
   [[nodiscard]] static std::vector<std::string> arguments() {
-    return {"batch", "in",        "-q", "--output-dir", "out", "--to",     "ply,obj", "-j",
-            "4",     "--threads", "4",  "--memory",     "1G",  "--tmpdir", "tmp"};
+    return {"batch",   "in",
+            "-q",      "--output-dir",
+            "out",     "--to",
+            "ply,obj", "-j",
+            "4",       "--threads",
+            "4",       "--memory",
+            "1G",      "--scratch-folder",
+            "tmp"};
   }
 
   [[nodiscard]] bool has_begun() const { return names_in("tmp").size() == 1; }
@@ -82,7 +88,7 @@ TEST_P(InterruptedBatch, LeavesNothingOfItsJobs) {
   EXPECT_GT(interrupted, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, InterruptedBatch, testing::Values(SIGINT, SIGTERM, SIGHUP),
+INSTANTIATE_TEST_SUITE_P(BySignal, InterruptedBatch, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
 using SignalledBatch = InterruptedBatch;
@@ -110,4 +116,4 @@ TEST_F(SignalledBatch, EndsJobsThatAreHeld) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -9,10 +9,10 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// All combinations, as a shell writes them.
 constexpr std::array kClosed = {"",        "<&-",      ">&-",      "2>&-",
@@ -81,4 +81,4 @@ TEST(ClosedDescriptors, AreErrorsWhereTheyAreWanted) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -12,11 +12,11 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 /// Runs a command that must fail with exit code 1 and one line that mentions `what`, and must leave
 /// the folder as it was.
@@ -207,4 +207,4 @@ TEST(ClosedPipe, EndsTheRunQuietly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -12,12 +12,12 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::AnyOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;  // whose runs need terabytes of addresses
@@ -25,7 +25,7 @@ constexpr bool kSanitized = true;  // whose runs need terabytes of addresses
 constexpr bool kSanitized = false;
 #endif
 
-class Limits : public testing::Test {
+class Limits : public ::testing::Test {
  protected:
   Limits() {
     work_.succeed("spillway generate -q terrain -n 2e5 -o in.las; mkdir out tmp");
@@ -105,4 +105,4 @@ TEST_F(Limits, OfThreads) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

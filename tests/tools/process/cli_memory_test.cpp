@@ -11,16 +11,16 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kMiB = 1 << 20;
 /// What a process may hold beside its limit, in MiB.
 constexpr double kBeside = 14;
 
-class ResidentMemory : public testing::Test {
+class ResidentMemory : public ::testing::Test {
  protected:
   void SetUp() override {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -32,10 +32,11 @@ class ResidentMemory : public testing::Test {
     work_.succeed("spillway generate -q terrain -n " + points);
   }
 
-  /// The figures of a run on two threads.
+  /// The statistics of a run on two threads.
   [[nodiscard]] nlohmann::json triangulate(const std::string& arguments,
                                            const std::string& before = "") const {
-    work_.succeed(before + "spillway triangulate -q --threads 2 --tmpdir . --stats stats.json " +
+    work_.succeed(before +
+                  "spillway triangulate -q --threads 2 --scratch-folder . --stats stats.json " +
                   arguments);
     return nlohmann::json::parse(work_.read("stats.json"));
   }
@@ -120,7 +121,7 @@ TEST_F(ResidentMemory, IsTheLeastLimitOfAPipeAndWhatAnEmptyRunTakes) {
   const std::string equal =
       "awk 'BEGIN {for (i = 0; i < 1500000; ++i) print 5, 7, i % 1000; print \"0 0 0\\n9 0 1\"}' "
       "| ";
-  const auto stats = triangulate("--memory 32M --duplicates highest - -o mesh.obj", equal);
+  const auto stats = triangulate("--memory 32M --heights highest - -o mesh.obj", equal);
   EXPECT_GT(stats["spilled_points"], 0);
   EXPECT_EQ(stats["duplicates"], 1'499'999);
   EXPECT_LE(peak(stats), 32 + kBesidePipes);
@@ -133,7 +134,8 @@ TEST_F(ResidentMemory, IsTheLeastLimitWhereTilesAreTriangulatedWhilePointsAreRea
   EXPECT_LT(survey["first_block_read_points"], survey["points"].get<int>() / 2);
   EXPECT_LE(peak(survey), 32 + kBeside);
 
-  work_.succeed("spillway convert -q t_*.las --sorted --memory 32M --tmpdir . -o sorted.spp");
+  work_.succeed(
+      "spillway convert -q t_*.las --sorted --memory 32M --scratch-folder . -o sorted.spp");
   const auto pipe = triangulate("--memory 32M - -o mesh.spm", "cat sorted.spp | ");
   EXPECT_LT(pipe["first_block_read_points"], pipe["points"].get<int>() / 2);
   EXPECT_LE(peak(pipe), 32 + kBeside);
@@ -159,7 +161,7 @@ TEST_F(ResidentMemory, IsTheLeastLimitOfManyFilesWithLongTextsAndOfManyCells) {
 
 TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
   generate("3000000 -o in.spp");
-  const std::string sort = "spillway convert -v --sorted --memory 32M --tmpdir . ";
+  const std::string sort = "spillway convert -v --sorted --memory 32M --scratch-folder . ";
   for (const std::string input : {"in.spp", "- < in.spp"}) {
     const std::string command = fmt::format("{}-o sorted.spp {}", sort, input);
     EXPECT_LE(peak_of_conversion(command), 32 + kBeside) << input;
@@ -169,4 +171,4 @@ TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -20,22 +20,22 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Enough to overflow what waits in memory under the least --memory for two dimensions.
 constexpr int kPoints = 800'000;
 
-constexpr const char* kTriangulate = "spillway triangulate -q --memory 32M --tmpdir tmp ";
+constexpr const char* kTriangulate = "spillway triangulate -q --memory 32M --scratch-folder tmp ";
 
 /// Points in in.las (or in.txt), temporary files in `tmp`.
-class OutOfCoreFault : public testing::Test {
+class OutOfCoreFault : public ::testing::Test {
  protected:
   OutOfCoreFault() { fs::create_directory(work_.folder() / "tmp"); }
 
@@ -44,7 +44,7 @@ class OutOfCoreFault : public testing::Test {
   }
 
   /// Runs a command that must fail with one line like `message` and leave everything as it was.
-  void expect_failure(const std::string& command, const testing::Matcher<std::string>& message,
+  void expect_failure(const std::string& command, const ::testing::Matcher<std::string>& message,
                       int exit_code = 1) const {
     const auto before = work_.names();
     const Result result = work_.run(command);
@@ -120,7 +120,7 @@ TEST_F(OutOfCoreFault, SizesThatAreNone) {
 TEST_F(OutOfCoreFault, TooLittleMemoryIsRefusedWithTheLeastThatWillDo) {
   generate("in.las", 100);
   for (const std::string options : {"--dim 2", "--dim 3"}) {
-    const std::string command = "spillway triangulate -q --tmpdir tmp in.las -o mesh.spm ";
+    const std::string command = "spillway triangulate -q --scratch-folder tmp in.las -o mesh.spm ";
     const std::string memory = options + " --memory ";
     expect_failure(
         command + memory + "1M",
@@ -153,7 +153,8 @@ TEST_F(OutOfCoreFault, TheLeastMemoryIsNamedWithWhatOutputsTakeThemselves) {
 
 TEST_F(OutOfCoreFault, MoreTilesThanThereIsMemoryForAreRefused) {
   generate("in.las", 1500000);
-  const std::string command = "spillway triangulate -q --tile 100 in.las -o mesh.spm --memory ";
+  const std::string command =
+      "spillway triangulate -q --tile-points 100 in.las -o mesh.spm --memory ";
   const std::string message = work_.run(command + "32M").err;
   EXPECT_THAT(message,
               AllOf(HasSubstr("tiles of at most 100 points"), HasSubstr("M may be enough")));
@@ -166,7 +167,7 @@ struct Refusal {
   bool all_border;  ///< in the plane, so that what is enough for any points can be told
 };
 
-class OutOfCoreRefusal : public testing::TestWithParam<Refusal> {};
+class OutOfCoreRefusal : public ::testing::TestWithParam<Refusal> {};
 
 TEST_P(OutOfCoreRefusal, NamesMemoryThatIsEnough) {
   const Workspace work;
@@ -174,7 +175,7 @@ TEST_P(OutOfCoreRefusal, NamesMemoryThatIsEnough) {
   work.succeed(fmt::format("spillway generate -q {} -o in.spp", refusal.points));
   const std::string dimension =
       std::string(refusal.points).find("--dim 3") == std::string::npos ? "" : "--dim 3 ";
-  const std::string command = "spillway triangulate -q --tmpdir . " + dimension +
+  const std::string command = "spillway triangulate -q --scratch-folder . " + dimension +
                               "in.spp -o /dev/null --output-format spm --memory ";
   const Result refused = work.run(command + refusal.memory);
   EXPECT_EQ(refused.exit_code, 1);
@@ -190,22 +191,23 @@ TEST_P(OutOfCoreRefusal, NamesMemoryThatIsEnough) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Points, OutOfCoreRefusal,
-                         testing::Values(Refusal{"circle -n 3e5", "32M", true},
-                                         Refusal{"lines -n 3e5", "32M", true},
-                                         Refusal{"circle --dim 3 -n 100000", "96M", false},
-                                         Refusal{"lines --dim 3 -n 5000", "96M", false},
-                                         Refusal{"normal --dim 3 -n 6e6", "96M", false}));
+                         ::testing::Values(Refusal{"circle -n 3e5", "32M", true},
+                                           Refusal{"lines -n 3e5", "32M", true},
+                                           Refusal{"circle --dim 3 -n 100000", "96M", false},
+                                           Refusal{"lines --dim 3 -n 5000", "96M", false},
+                                           Refusal{"normal --dim 3 -n 6e6", "96M", false}));
 
 TEST_F(OutOfCoreFault, FoldersThatCannotBeWrittenTo) {
   generate("in.las", 100);
   work_.write("file", "");
-  const std::string command = "spillway triangulate -q in.las -o mesh.spm --tmpdir ";
-  expect_failure(command + "nowhere",
-                 AllOf(HasSubstr("--tmpdir"), HasSubstr("nowhere: No such file or directory")));
+  const std::string command = "spillway triangulate -q in.las -o mesh.spm --scratch-folder ";
+  expect_failure(command + "nowhere", AllOf(HasSubstr("--scratch-folder"),
+                                            HasSubstr("nowhere: No such file or directory")));
   expect_failure(command + "file", HasSubstr("file: Not a directory"));
   generate("large.las");
-  expect_failure("TMPDIR=nowhere spillway triangulate -q --memory 32M large.las -o mesh.spm",
-                 AllOf(HasSubstr("nowhere: No such file or directory"), HasSubstr("--tmpdir")));
+  expect_failure(
+      "TMPDIR=nowhere spillway triangulate -q --memory 32M large.las -o mesh.spm",
+      AllOf(HasSubstr("nowhere: No such file or directory"), HasSubstr("--scratch-folder")));
 }
 
 TEST_F(OutOfCoreFault, FolderOfAReadOnlyDisk) {
@@ -215,7 +217,7 @@ TEST_F(OutOfCoreFault, FolderOfAReadOnlyDisk) {
   if (mount("tmpfs", disk.c_str(), "tmpfs", MS_RDONLY, "size=64k") != 0) {
     GTEST_SKIP() << "a file system cannot be mounted here";
   }
-  expect_failure("spillway triangulate -q in.las -o mesh.spm --tmpdir disk",
+  expect_failure("spillway triangulate -q in.las -o mesh.spm --scratch-folder disk",
                  HasSubstr("disk: Read-only file system"));
   umount2(disk.c_str(), MNT_DETACH);
 }
@@ -227,8 +229,8 @@ TEST_F(OutOfCoreFault, FullDisk) {
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=256k") != 0) {
     GTEST_SKIP() << "a small file system cannot be mounted here";
   }
-  expect_failure("spillway triangulate -q --memory 32M in.las -o mesh.spm --tmpdir disk",
-                 AllOf(HasSubstr("No space left"), HasSubstr("--tmpdir")));
+  expect_failure("spillway triangulate -q --memory 32M in.las -o mesh.spm --scratch-folder disk",
+                 AllOf(HasSubstr("No space left"), HasSubstr("--scratch-folder")));
   EXPECT_TRUE(fs::is_empty(disk));
   umount2(disk.c_str(), MNT_DETACH);
 }
@@ -249,7 +251,7 @@ TEST_F(OutOfCoreFault, ClosedPipeEndsEveryStageQuietly) {
         "{{ {} - -o - --output-format {}; echo $? > second; }} | head -c 100 > /dev/null",
         kPoints, kTriangulate, format));
     EXPECT_EQ(work_.read("second"), "141\n") << format;
-    EXPECT_THAT(work_.read("first"), testing::AnyOf("0\n", "141\n")) << format;
+    EXPECT_THAT(work_.read("first"), ::testing::AnyOf("0\n", "141\n")) << format;
     EXPECT_EQ(result.err, "") << format;
     EXPECT_TRUE(nothing_in_tmp()) << format;
   }
@@ -257,7 +259,7 @@ TEST_F(OutOfCoreFault, ClosedPipeEndsEveryStageQuietly) {
 
 TEST_F(OutOfCoreFault, MeshThatIsCutShortAnywhere) {
   generate("in.las", 300);
-  work_.succeed("spillway triangulate -q in.las -o mesh.spm --tile 60");
+  work_.succeed("spillway triangulate -q in.las -o mesh.spm --tile-points 60");
   const std::string mesh = work_.read("mesh.spm");
   for (std::size_t cut = 1; cut < 12; ++cut) {
     const std::size_t size = cut < 8 ? mesh.size() * cut / 8 : mesh.size() - (cut - 7);
@@ -271,7 +273,7 @@ TEST_F(OutOfCoreFault, MeshThatIsCutShortAnywhere) {
   }
 }
 
-class OutOfCoreInterrupted : public OutOfCoreFault, public testing::WithParamInterface<int> {
+class OutOfCoreInterrupted : public OutOfCoreFault, public ::testing::WithParamInterface<int> {
  protected:
   /// Sends the signal and expects that nothing is left but what was there.
   void interrupt(pid_t process, const std::vector<std::string>& before) {
@@ -282,8 +284,8 @@ class OutOfCoreInterrupted : public OutOfCoreFault, public testing::WithParamInt
   }
 
   [[nodiscard]] pid_t triangulate(const std::string& input, const std::string& output) const {
-    return work_.start({"triangulate", "-q", "--memory", "32M", "--tmpdir", "tmp", input, "-o",
-                        output, "--output-format", "spm"});
+    return work_.start({"triangulate", "-q", "--memory", "32M", "--scratch-folder", "tmp", input,
+                        "-o", output, "--output-format", "spm"});
   }
 };
 
@@ -318,7 +320,7 @@ TEST_P(OutOfCoreInterrupted, WhileItWritesWhatIsFinal) {
   close(pipe);
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, OutOfCoreInterrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
+INSTANTIATE_TEST_SUITE_P(BySignal, OutOfCoreInterrupted, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
 TEST_F(OutOfCoreFault, PointsThatSpanNothingAreToldByTheirOwnNameNotByTheMemoryTheyWouldTake) {
@@ -326,17 +328,19 @@ TEST_F(OutOfCoreFault, PointsThatSpanNothingAreToldByTheirOwnNameNotByTheMemoryT
       "spillway generate -q collinear -n 2000000 -o line.spp\n"
       "spillway generate -q coplanar --dim 3 -n 2000000 -o plane.spp\n"
       "yes '3 4 5' | head -n 3000000 > equal.txt");
-  expect_failure("spillway triangulate -q line.spp --memory 32M -o out.ply --tmpdir tmp",
+  expect_failure("spillway triangulate -q line.spp --memory 32M -o out.ply --scratch-folder tmp",
                  HasSubstr("all 2000000 points lie on one line: there is no triangle to make"));
-  expect_failure("spillway triangulate -q line.spp --memory 2G -o out.ply --tmpdir tmp",
+  expect_failure("spillway triangulate -q line.spp --memory 2G -o out.ply --scratch-folder tmp",
                  HasSubstr("all 2000000 points lie on one line: there is no triangle to make"));
-  expect_failure("spillway triangulate -q plane.spp --dim 3 --memory 96M -o out.ply --tmpdir tmp",
-                 HasSubstr("all 2000000 points lie in one plane: there is no tetrahedron to make"));
+  expect_failure(
+      "spillway triangulate -q plane.spp --dim 3 --memory 96M -o out.ply --scratch-folder tmp",
+      HasSubstr("all 2000000 points lie in one plane: there is no tetrahedron to make"));
   for (const char* const how : {"--memory 32M", "--memory 2G", "--memory 96M --dim 3"}) {
-    expect_failure(fmt::format("spillway triangulate -q equal.txt {} -o out.ply --tmpdir tmp", how),
-                   HasSubstr("the input has only 1 distinct point"));
+    expect_failure(
+        fmt::format("spillway triangulate -q equal.txt {} -o out.ply --scratch-folder tmp", how),
+        HasSubstr("the input has only 1 distinct point"));
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -17,20 +17,20 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Enough to overflow what waits in memory under the least --memory for two dimensions.
 constexpr int kPoints = 800'000;
 
 /// A folder with temporary files in `tmp`, which must be empty after each run.
-class OutOfCore : public testing::Test {
+class OutOfCore : public ::testing::Test {
  protected:
   OutOfCore() { std::filesystem::create_directory(work_.folder() / "tmp"); }
 
-  /// Triangulates with the least memory and returns the figures, among which are spilled points.
+  /// Triangulates with the least memory and returns the statistics, among which are spilled points.
   [[nodiscard]] nlohmann::json spill(const std::string& arguments,
                                      const std::string& before = "") const {
     nlohmann::json stats = triangulate("--memory 32M " + arguments, before);
@@ -40,7 +40,8 @@ class OutOfCore : public testing::Test {
 
   [[nodiscard]] nlohmann::json triangulate(const std::string& arguments,
                                            const std::string& before = "") const {
-    work_.succeed(before + "spillway triangulate -q --tmpdir tmp --stats stats.json " + arguments);
+    work_.succeed(before + "spillway triangulate -q --scratch-folder tmp --stats stats.json " +
+                  arguments);
     EXPECT_TRUE(std::filesystem::is_empty(work_.folder() / "tmp")) << arguments;
     return nlohmann::json::parse(work_.read("stats.json"));
   }
@@ -75,9 +76,10 @@ TEST_F(OutOfCore, HashDoesNotDependOnTilesNorMemoryNorThreads) {
   generate(100'000, "in.las");
   const auto expected = triangulate("in.las -o mesh.spm")["canonical_hash"];
   for (const std::string options :
-       {"--tile 5000 --memory 64M", "--tile 3000 --base-case 100 --threads 1",
-        "--tile 20000 --base-case 700 --children 8 --threads 4",
-        "--tile 1000 --division cycling --children 3", "--tile 40000 --division constant"}) {
+       {"--tile-points 5000 --memory 64M", "--tile-points 3000 --leaf-points 100 --threads 1",
+        "--tile-points 20000 --leaf-points 700 --children 8 --threads 4",
+        "--tile-points 1000 --division cycling --children 3",
+        "--tile-points 40000 --division constant"}) {
     EXPECT_EQ(triangulate("in.las -o mesh.spm " + options)["canonical_hash"], expected) << options;
     EXPECT_EQ(check("mesh.spm --points in.las")["canonical_hash"], expected) << options;
   }
@@ -85,25 +87,26 @@ TEST_F(OutOfCore, HashDoesNotDependOnTilesNorMemoryNorThreads) {
 
 TEST_F(OutOfCore, TetrahedraOfManyTilesAreTheSameInEveryFormat) {
   work_.succeed("spillway generate -q uniform -n 6000 --dim 3 -o in.npy");
-  const std::string options = "in.npy --dim 3 --base-case 400 ";
+  const std::string options = "in.npy --dim 3 --leaf-points 400 ";
   const auto expected = triangulate(options + "-o whole.spm")["canonical_hash"];
   for (const std::string name : {"mesh.spm", "mesh.ply", "mesh.vtu", "mesh.npy"}) {
-    const auto stats = triangulate(fmt::format("{} --tile 1500 -o {}", options, name));
+    const auto stats = triangulate(fmt::format("{} --tile-points 1500 -o {}", options, name));
     EXPECT_GT(stats["tiles"], 3);
     EXPECT_EQ(stats["canonical_hash"], expected) << name;
     EXPECT_EQ(check(fmt::format("{} --points in.npy", name))["canonical_hash"], expected) << name;
   }
 }
 
-class OutOfCoreFormat : public OutOfCore, public testing::WithParamInterface<std::string> {};
+class OutOfCoreFormat : public OutOfCore, public ::testing::WithParamInterface<std::string> {};
 
 TEST_P(OutOfCoreFormat, HasTheSameBytesForAnyThreadsAndIsProved) {
   const std::string format = GetParam();
   generate(kPoints, "in.las");
   nlohmann::json stats;
   for (const std::string threads : {"1", "2", "4"}) {
-    stats = spill(fmt::format("--tile 30000 --threads {0} in.las -o {0}.out --output-format {1}",
-                              threads, format));
+    stats =
+        spill(fmt::format("--tile-points 30000 --threads {0} in.las -o {0}.out --output-format {1}",
+                          threads, format));
   }
   work_.succeed(
       "for f in 1.out*; do rest=${f#1}; cmp $f 2$rest; cmp $f 4$rest; done\n"
@@ -114,7 +117,7 @@ TEST_P(OutOfCoreFormat, HasTheSameBytesForAnyThreadsAndIsProved) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, OutOfCoreFormat,
-                         testing::Values("spm", "sma", "ply", "obj", "vtu", "npy"),
+                         ::testing::Values("spm", "sma", "ply", "obj", "vtu", "npy"),
                          [](const auto& test) { return test.param; });
 
 TEST_F(OutOfCore, BytesDoNotDependOnHowAPipeDripsNorOnWhetherItIsAFile) {
@@ -201,7 +204,7 @@ TEST_F(OutOfCore, DuplicatesThatWereSpilledGiveTheHeightAndIndexAskedFor) {
   };
   for (const Choice& choice :
        {Choice{"first", 5, 0}, {"lowest", 2, 1}, {"highest", 11, 2}, {"mean", 6, 0}}) {
-    const auto stats = spill("a.txt b.txt c.txt -o mesh.npy --id --duplicates " + choice.name);
+    const auto stats = spill("a.txt b.txt c.txt -o mesh.npy --id --heights " + choice.name);
     EXPECT_EQ(stats["duplicates"], 2 * kPlaces);
     const auto vertices = array_of<double>(work_.read("mesh_vertices.npy"));
     const auto index = array_of<std::int64_t>(work_.read("mesh_input_index.npy"));
@@ -270,7 +273,7 @@ TEST_F(OutOfCore, InputsOfOneLatticeWithOtherOffsetsAndHeightScalesKeepTheirCoor
 TEST_F(OutOfCore, MaxEdgeLeavesOutTheSameInTilesAndInOne) {
   generate(50'000, "in.las");
   const auto whole = triangulate("in.las -o whole.ply --max-edge 1");
-  const auto tiles = triangulate("in.las -o tiles.ply --max-edge 1 --tile 3000");
+  const auto tiles = triangulate("in.las -o tiles.ply --max-edge 1 --tile-points 3000");
   EXPECT_GT(whole["left_out"], 0);
   for (const char* key : {"canonical_hash", "left_out", "simplices", "hull_facets"}) {
     EXPECT_EQ(tiles[key], whole[key]) << key;
@@ -300,4 +303,4 @@ TEST_F(OutOfCore, ProgressOfAChainNamesEveryPhase) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -21,14 +21,14 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/report/progress_lines.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Containers run tests as root, which mpirun refuses unless it is told twice.
 const std::string kMpirun = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " +
@@ -40,7 +40,7 @@ std::string ranks(int count, const std::string& arguments) {
 }
 
 /// The mesh that one process makes, and the same of ranks.
-class RanksOfTheCommand : public testing::Test {
+class RanksOfTheCommand : public ::testing::Test {
  protected:
   void expect_same_mesh(int count, const std::string& arguments, const std::string& name = "b.spm",
                         const std::string& before = "") const {
@@ -128,7 +128,7 @@ TEST_F(RanksOfTheCommand, EndEachPhaseOfTheProgressWithTheTotalsOfAll) {
   }
   work_.succeed("spillway generate -q normal -n 2500000 -o many.spp");
   const Phases divided =
-      run(ranks(2, "triangulate - --tile 20000 --memory 32M -o a.spm < many.spp"));
+      run(ranks(2, "triangulate - --tile-points 20000 --memory 32M -o a.spm < many.spp"));
   const auto stats = nlohmann::json::parse(work_.read("run.json"));
   EXPECT_GT(stats["divided_points"], 0);
   EXPECT_EQ(divided, (Phases{{"read", 2500000, "points"},
@@ -176,8 +176,8 @@ TEST_F(RanksOfTheCommand, GiveEachVertexTheSameHeightAndIndexAsOneProcess) {
       "spillway convert -q p$i.npy -o p$i.txt && "
       "awk -v i=$i '{ print $1, $2, NR * 5 + i }' p$i.txt > z$i.txt; done");
   for (const char* choice : {"first", "lowest", "highest", "mean"}) {
-    expect_same_mesh(
-        3, fmt::format("z1.txt z2.txt z3.txt z4.txt z5.txt --id --duplicates {}", choice));
+    expect_same_mesh(3,
+                     fmt::format("z1.txt z2.txt z3.txt z4.txt z5.txt --id --heights {}", choice));
     EXPECT_EQ(vertex_lines("a.spm"), vertex_lines("b.spm")) << choice;
   }
 }
@@ -187,7 +187,7 @@ TEST_F(RanksOfTheCommand, GiveEachVertexTheAttributesThatOneProcessDoes) {
       "spillway generate -q duplicates -n 9000 -o p.npy && spillway convert -q p.npy -o p.txt\n"
       "awk 'BEGIN { print \"x y z number odd\" } "
       "{ print $1, $2, NR % 50, NR, NR * 0.1 }' p.txt > in.txt");
-  for (const char* how : {"--duplicates highest", "--dim 3", "--tile 500"}) {
+  for (const char* how : {"--heights highest", "--dim 3", "--tile-points 500"}) {
     for (const char* name : {"b.spm", "b.ply", "b.vtu"}) {
       expect_same_mesh(3, fmt::format("in.txt --id --attributes all {}", how), name);
       EXPECT_EQ(vertex_lines("a.spm"), vertex_lines(name)) << how << ", " << name;
@@ -241,11 +241,11 @@ TEST_F(RanksOfTheCommand, DrawTheSameContours) {
   for (const int count : {1, 2, 5}) {
     work_.succeed(ranks(count, options + "b.json -o b.geojson"));
     EXPECT_EQ(lines("a.geojson"), lines("b.geojson")) << count << " ranks";
-    const auto figures = [this](const char* name) {
+    const auto statistics = [this](const char* name) {
       return nlohmann::json::parse(work_.read(name)).at("contours");
     };
-    EXPECT_EQ(figures("a.json").at("lines"), figures("b.json").at("lines"));
-    EXPECT_EQ(figures("a.json").at("points"), figures("b.json").at("points"));
+    EXPECT_EQ(statistics("a.json").at("lines"), statistics("b.json").at("lines"));
+    EXPECT_EQ(statistics("a.json").at("points"), statistics("b.json").at("points"));
   }
 }
 
@@ -257,8 +257,9 @@ TEST_F(RanksOfTheCommand, WorkWithFewerPointsThanThereAreOfThem) {
 TEST_F(RanksOfTheCommand, KeepTilesOnDisksOfTheirOwn) {
   work_.succeed("mkdir one two && spillway generate -q terrain -n 1500000 -o in.las");
   const std::string common = "triangulate -q --memory 32M in.las -o b.spm --stats s.json";
-  work_.succeed(fmt::format("{0} -n 1 {1} {2} --tmpdir one : -n 1 {1} {2} --tmpdir two", kMpirun,
-                            command_path(), common));
+  work_.succeed(
+      fmt::format("{0} -n 1 {1} {2} --scratch-folder one : -n 1 {1} {2} --scratch-folder two",
+                  kMpirun, command_path(), common));
   const auto stats = nlohmann::json::parse(work_.read("s.json"));
   for (const auto& rank : stats.at("ranks").at("each")) EXPECT_GT(rank.at("spilled_bytes"), 0);
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
@@ -319,7 +320,8 @@ TEST_F(RanksThatFail, SayOnceWhatIsWrongWithInputOptionsAndOutput) {
   expect_failure(ranks(3, "triangulate -q missing.las -o b.ply"), "cannot open missing.las");
   expect_failure(ranks(3, "triangulate -q cut.las -o b.ply"), "cut.las");
   expect_failure(ranks(3, "triangulate -q in.las -o nowhere/b.ply"), "create the folder nowhere");
-  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --tmpdir nowhere"), "--tmpdir");
+  expect_failure(ranks(3, "triangulate -q in.las -o b.ply --scratch-folder nowhere"),
+                 "--scratch-folder");
   expect_failure(ranks(3, "triangulate -q in.las -o b.ply --max-edge 0.0001"), "nothing is left");
   expect_failure(ranks(3, "triangulate -q in.las"), "--output", 2);
   expect_failure(ranks(3, "triangulate -q in.las -o b.ply --simulate-cores 1,2"), "mpirun", 2);
@@ -367,10 +369,11 @@ TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
     const std::string common = command_path() + " triangulate -q in.las -o b.spm ";
     return fmt::format("{0} -n 1 {1} {2} : -n 1 {1} {3}", kMpirun, common, first, second);
   };
-  expect_failure(both("--tmpdir one", "--tmpdir nowhere"), "--tmpdir: cannot write to nowhere");
+  expect_failure(both("--scratch-folder one", "--scratch-folder nowhere"),
+                 "--scratch-folder: cannot write to nowhere");
   expect_failure(both("", "--bogus"), "--bogus", 2);
   for (const char* different :
-       {"--max-edge 30", "--id", "--dim 3", "--duplicates lowest", "--parts", "--every 2"}) {
+       {"--max-edge 30", "--id", "--dim 3", "--heights lowest", "--parts", "--every 2"}) {
     expect_failure(both("", different), "other options", 2);
   }
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
@@ -423,7 +426,7 @@ std::vector<pid_t> processes_with(const std::string& argument) {
 
 /// A job that spills, disturbed so many milliseconds after its ranks have begun: while they read,
 /// triangulate, merge or write, as it happens.
-class RanksThatAreStopped : public RanksThatFail, public testing::WithParamInterface<int> {
+class RanksThatAreStopped : public RanksThatFail, public ::testing::WithParamInterface<int> {
  protected:
   void stop_job(int signal, const std::function<pid_t(const std::vector<pid_t>&)>& choose) const {
     work_.succeed("mkdir tmp && spillway generate -q terrain -n 3000000 -o in.las");
@@ -431,8 +434,8 @@ class RanksThatAreStopped : public RanksThatFail, public testing::WithParamInter
     const std::string scratch = work_.folder() / "tmp";
     Result result{};
     std::jthread job([&] {
-      result =
-          work_.run(ranks(3, "triangulate -q --memory 32M in.las -o b.spm --tmpdir " + scratch));
+      result = work_.run(
+          ranks(3, "triangulate -q --memory 32M in.las -o b.spm --scratch-folder " + scratch));
     });
     std::vector<pid_t> processes;
     while (processes.size() < 3) {
@@ -477,7 +480,7 @@ TEST_P(RanksThatAreStopped, ByAnInterruptOfMpirunLeaveNothing) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(AfterMilliseconds, RanksThatAreStopped, testing::Values(100, 900));
+INSTANTIATE_TEST_SUITE_P(AfterMilliseconds, RanksThatAreStopped, ::testing::Values(100, 900));
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

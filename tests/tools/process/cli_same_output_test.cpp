@@ -9,13 +9,13 @@
 
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::AnyOf;
-using testing::HasSubstr;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
 
-class SameOutput : public testing::Test {
+class SameOutput : public ::testing::Test {
  protected:
   SameOutput() {
     work_.succeed(
@@ -76,4 +76,4 @@ TEST_F(SameOutput, IsAWholeJobOfABatch) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -21,12 +21,12 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Starts a command, waits until `ready`, sends the signal and returns the exit code.
 int interrupt(const Workspace& work, const std::vector<std::string>& arguments, int signal_number,
@@ -42,7 +42,7 @@ int interrupt(const Workspace& work, const std::vector<std::string>& arguments, 
   return wait_for_exit(process);
 }
 
-class Interrupted : public testing::TestWithParam<int> {};
+class Interrupted : public ::testing::TestWithParam<int> {};
 
 TEST_P(Interrupted, LongGenerateLeavesNothingBehind) {
   const Workspace work;
@@ -103,7 +103,7 @@ TEST_P(Interrupted, WaitingForInputEnds) {
   EXPECT_EQ(interrupt(work, {"info", "-", "-q"}, GetParam(), a_while), 128 + GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, testing::Values(SIGINT, SIGTERM, SIGHUP),
+INSTANTIATE_TEST_SUITE_P(BySignal, Interrupted, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
                          [](const auto& test) { return std::string(sigabbrev_np(test.param)); });
 
 TEST(Signals, OfTheFirstMomentsLeaveNothing) {
@@ -113,11 +113,11 @@ TEST(Signals, OfTheFirstMomentsLeaveNothing) {
   std::mt19937 random(22);
   for (int run = 0; run < 40; ++run) {
     const pid_t process =
-        work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--tmpdir", "tmp"});
+        work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--scratch-folder", "tmp"});
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 40000));
     kill(process, SIGTERM);
     EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
-    EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")))
+    EXPECT_THAT(work.messages(), ::testing::AnyOf("", StartsWith("spillway: interrupted by SIG")))
         << "before main a signal ends the process at once";
     ASSERT_EQ(work.names(), before) << "run " << run;
     ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
@@ -144,7 +144,7 @@ TEST(Signals, ThatWaitWhereTheyAreBlockedAreTakenInMain) {
   }
   EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
   EXPECT_THAT(work.read("messages"), StartsWith("spillway: interrupted by SIGTERM"));
-  EXPECT_THAT(work.names(), testing::ElementsAre("messages"));
+  EXPECT_THAT(work.names(), ::testing::ElementsAre("messages"));
 }
 
 /// A signal that comes after the output has its name finds it complete.
@@ -153,15 +153,16 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
   work.succeed("spillway generate -q terrain -n 1e6 -o in.las; mkdir tmp");
   const auto before = work.names();
   const std::filesystem::path mesh = work.folder() / "mesh.ply";
-  work.succeed("spillway triangulate -q in.las -o mesh.ply --tile 4000 --memory 32M");
+  work.succeed("spillway triangulate -q in.las -o mesh.ply --tile-points 4000 --memory 32M");
   const std::uintmax_t complete_size = file_size(mesh);
   remove(mesh);
   std::mt19937 random(20);
   constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
   int interrupted = 0;
   for (int run = 0; run < 14; ++run) {
-    const pid_t process = work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--tile",
-                                      "4000", "--memory", "32M", "--tmpdir", "tmp"});
+    const pid_t process =
+        work.start({"triangulate", "-q", "in.las", "-o", "mesh.ply", "--tile-points", "4000",
+                    "--memory", "32M", "--scratch-folder", "tmp"});
     std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 700));
     const int number = kSignals[run % kSignals.size()];
     kill(process, number);
@@ -173,10 +174,10 @@ TEST(Signals, WhileScratchFilesComeAndGoLeaveNothing) {
     } else {
       EXPECT_NE(exit_code, 0);
     }
-    EXPECT_THAT(exit_code, testing::AnyOf(0, 128 + number)) << work.messages();
+    EXPECT_THAT(exit_code, ::testing::AnyOf(0, 128 + number)) << work.messages();
     if (exit_code != 0) ++interrupted;
     // Before main a signal ends the process at once.
-    EXPECT_THAT(work.messages(), testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
+    EXPECT_THAT(work.messages(), ::testing::AnyOf("", StartsWith("spillway: interrupted by SIG")));
     ASSERT_EQ(work.names(), before) << "run " << run;
     ASSERT_TRUE(std::filesystem::is_empty(work.folder() / "tmp")) << "run " << run;
   }
@@ -191,8 +192,8 @@ TEST(Signals, WhileGdalWritesLeaveNothing) {
   std::mt19937 random(21);
   for (int run = 0; run < 8; ++run) {
     const std::string output = run % 2 == 0 ? "lines.shp" : "lines.gpkg";
-    const pid_t process =
-        work.start({"contour", "-q", "in.las", "-o", output, "--interval", "1", "--tmpdir", "tmp"});
+    const pid_t process = work.start(
+        {"contour", "-q", "in.las", "-o", output, "--interval", "1", "--scratch-folder", "tmp"});
     for (int i = 0; i < 2000 && !work.has_unfinished(output); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
@@ -230,4 +231,4 @@ TEST(Signals, ATerminalsProgressLineIsWipedFirst) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 /// Pages of files that the process has in memory, in KiB; 0 where the system does not tell.
@@ -29,4 +29,4 @@ TEST(ProgramPages, AreLetGoOfAndComeBackWhenTheyAreNeeded) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -10,11 +10,11 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::string advice(const ErrorFacts& facts) {
-  return advised_message(Error("this is wrong", ErrorCode::kBadInput, facts));
+  return advised_message(Failure("this is wrong", ErrorCode::kBadInput, facts));
 }
 
 TEST(Advice, SaysNothingWhereNothingIsKnownToHelp) { EXPECT_EQ(advice({}), "this is wrong"); }
@@ -32,9 +32,9 @@ TEST(Advice, NamesTheMemoryThatIsOrMayBeEnough) {
 
 TEST(Advice, OfFoldersDependsOnTheSystemsReason) {
   EXPECT_EQ(advice({.system_error = ENOSPC, .remedy = Remedy::kScratchFolder}),
-            "this is wrong; free some space or choose another folder with --tmpdir");
+            "this is wrong; free some space or choose another folder with --scratch-folder");
   EXPECT_EQ(advice({.system_error = EACCES, .remedy = Remedy::kScratchFolder}),
-            "this is wrong; choose another folder with --tmpdir");
+            "this is wrong; choose another folder with --scratch-folder");
 }
 
 TEST(Advice, IsAnotherForEachRemedy) {
@@ -53,4 +53,4 @@ TEST(Advice, IsAnotherForEachRemedy) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -1,4 +1,4 @@
-// What --progress json says of every phase of every subcommand, against the figures of the run.
+// What --progress json says of every phase of every subcommand, against the statistics of the run.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,12 +10,12 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/report/progress_lines.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 using Phases = std::vector<EndedPhase>;
 
-class ProgressOfTheCommand : public testing::Test {
+class ProgressOfTheCommand : public ::testing::Test {
  protected:
   /// The phases of one run that must succeed.
   [[nodiscard]] Phases phases(const std::string& arguments) const {
@@ -50,7 +50,7 @@ TEST_F(ProgressOfTheCommand, TriangulateEndsItsPhasesWithTheTotals) {
        {"in.las -o a.spm", "in.txt -o a.ply", "in.las in.txt -o a.spm",
         "space.npy --dim 3 -o a.spm", "in.las --every 3 -o a.spm",
         "in.las --thin 3 --bounds 500000,4100000,500200,4100200 -o a.vtu",
-        "in.las --max-edge 2 -o a.spm", "in.las --tile 5000 --memory 32M -o a.sma"}) {
+        "in.las --max-edge 2 -o a.spm", "in.las --tile-points 5000 --memory 32M -o a.sma"}) {
     SCOPED_TRACE(arguments);
     const Phases all = phases("triangulate --stats run.json " + arguments);
     const char* const simplices = figure("/dimension") == 2 ? "triangles" : "tetrahedra";
@@ -72,7 +72,8 @@ TEST_F(ProgressOfTheCommand, PointsThatAreWithheldAreReadToo) {
 
 TEST_F(ProgressOfTheCommand, TilesThatAreDividedAgainAreAPhase) {
   const Phases all = phases_of_script(
-      "spillway generate -q normal -n 1200000 | spillway triangulate - --memory 32M --tile 20000 "
+      "spillway generate -q normal -n 1200000 | spillway triangulate - --memory 32M --tile-points "
+      "20000 "
       "-o a.spm --stats run.json --progress json");
   ASSERT_GT(figure("/divided_points"), 0U);
   EXPECT_EQ(all, (Phases{{"read", 1200000, "points"},
@@ -254,4 +255,4 @@ TEST_F(ProgressOfTheCommand, GrowsWhileAPipeIsRead) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

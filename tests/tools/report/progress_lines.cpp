@@ -7,7 +7,7 @@
 #include <ostream>
 #include <sstream>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 std::ostream& operator<<(std::ostream& stream, const EndedPhase& phase) {
   return stream << phase.name << ": " << phase.done << " " << phase.unit;
@@ -54,4 +54,4 @@ std::vector<EndedPhase> ended_phases(const std::string& standard_error) {
   return phases;
 }
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 /// A phase as its last line has it.
 struct EndedPhase {
@@ -27,4 +27,4 @@ std::ostream& operator<<(std::ostream& stream, const EndedPhase& phase);
 /// phase, fractions lie between 0 and 1, and each phase has one last line, with the fraction 1.
 std::vector<EndedPhase> ended_phases(const std::string& standard_error);
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

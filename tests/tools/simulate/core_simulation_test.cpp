@@ -8,7 +8,7 @@
 #include "tools/simulate/resource.h"
 #include "tools/simulate/run_player.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 std::string_view bottleneck_of(const RunModel& run, unsigned cores, double disk_speed = 0) {
@@ -119,4 +119,4 @@ TEST(LargerRun, TilesOfALaterCopyAreCompleteLater) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 #include "src/delaunay/common/schedule.h"
 #include "tools/simulate/task_player.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 Task task_of(double seconds, std::size_t grains = 1) {
@@ -111,4 +111,4 @@ TEST(TaskPlayer, PlaysAsTheGreedyScheduleDoes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 
 #include "tests/tools/simulate/run_samples.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
 RunModel batches_of(std::size_t count, const BatchCost& batch) {
@@ -142,4 +142,4 @@ TEST(RunPlayer, WhoReadsLendsAHandWhereTooMuchIsReady) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

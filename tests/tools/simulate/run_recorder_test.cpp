@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Times are much longer than what the test itself takes.
@@ -50,9 +50,9 @@ TEST(RunRecorder, PutsStepsWhereTheyBelong) {
   recorder.step(step("write", true, 11, 1000));
   Task merge{.seconds = 90, .grains = 2};
   recorder.node({.number = 1, .level = 1, .children = {0}, .task = merge});
-  RunFigures figures;
-  figures.mesh.points = 123;
-  const RunModel run = recorder.take(figures, 8000);
+  RunStatistics statistics;
+  statistics.mesh.points = 123;
+  const RunModel run = recorder.take(statistics, 8000);
 
   EXPECT_EQ(run.limits.batches, 3U);
   EXPECT_EQ(run.points, 123U);
@@ -108,4 +108,4 @@ TEST(RunRecorder, ScalesTasksToTheirProcessorTime) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 
 #include "tools/simulate/run_model.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 
 /// Limits that bound nothing.
 inline RunLimits no_limits() {
@@ -45,4 +45,4 @@ inline void add_merge_of_tiles(RunModel& run, std::vector<std::uint32_t> childre
   run.costs.push_back({.parts = {{.work = one_step(seconds)}}});
 }
 
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Nodes have chunks of all sizes: threads wait for each other less if each has several.
@@ -66,4 +66,4 @@ void ChunkFile::add(const NodeToWrite& node, std::span<const std::byte> chunk) {
   end_ += chunk.size();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

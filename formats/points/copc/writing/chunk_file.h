@@ -13,7 +13,7 @@
 #include "formats/points/laz/chunk_encoder.h"
 #include "formats/points/laz/chunk_table.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A node whose chunk is to be written.
 struct NodeToWrite {
@@ -56,4 +56,4 @@ class ChunkFile {
   std::vector<LazChunk> chunks_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::int32_t kLevelsOfPage = 4;
@@ -98,4 +98,4 @@ HierarchyPages hierarchy_pages(std::vector<HierarchyEntry> nodes, std::uint64_t 
   return one;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

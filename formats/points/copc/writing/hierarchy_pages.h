@@ -6,7 +6,7 @@
 
 #include "formats/points/copc/node_key.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The pages of a hierarchy, the root page first.
 struct HierarchyPages {
@@ -19,4 +19,4 @@ struct HierarchyPages {
 HierarchyPages hierarchy_pages(std::vector<HierarchyEntry> nodes, std::uint64_t begin,
                                std::size_t most_together = 4096);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

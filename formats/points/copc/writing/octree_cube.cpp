@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Places have 32 bits.
@@ -14,7 +14,7 @@ constexpr double kStepsOfDeepest = 16;
 
 }  // namespace
 
-OctreeCube::OctreeCube(const Lattice& lattice, const Box<3>& integers) {
+OctreeCube::OctreeCube(const IntegerLattice& lattice, const Box<3>& integers) {
   if (integers.empty()) return;
   const double step = *std::ranges::min_element(lattice.scale);
   double extent = 0;
@@ -33,4 +33,4 @@ OctreeCube::OctreeCube(const Lattice& lattice, const Box<3>& integers) {
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Where a point lies in the octree's cube: along each axis, in sample cells of the deepest nodes,
 /// of which a node has kFinest along each axis.
@@ -26,7 +26,7 @@ class OctreeCube {
   /// Of no points.
   OctreeCube() = default;
   /// Around these integers of a lattice.
-  OctreeCube(const Lattice& lattice, const Box<3>& integers);
+  OctreeCube(const IntegerLattice& lattice, const Box<3>& integers);
 
   /// The level of the deepest nodes.
   [[nodiscard]] int depth() const { return depth_; }
@@ -82,4 +82,4 @@ class OctreeCube {
   double cells_per_step_ = 1;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kOctants = 8;
@@ -98,4 +98,4 @@ void OctreeDealing::add_parts(std::size_t number, const NodeKey& key,
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

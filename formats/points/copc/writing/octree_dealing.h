@@ -13,7 +13,7 @@
 #include "formats/points/copc/writing/record_lists.h"
 #include "formats/points/copc/writing/sample_grid.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Some records of the octree.
 struct OctreePart {
@@ -56,4 +56,4 @@ class OctreeDealing {
   RecordLists lists_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

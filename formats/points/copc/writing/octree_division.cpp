@@ -6,7 +6,7 @@
 
 #include "formats/points/copc/writing/sample_grid.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kOctants = 8;
@@ -125,4 +125,4 @@ DividedRecords divide_records(std::span<const std::byte> records, std::size_t re
   return Division(records, record_length, cube, rules).run(top, sharing);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

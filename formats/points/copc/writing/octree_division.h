@@ -10,7 +10,7 @@
 #include "formats/points/copc/writing/octree_cube.h"
 #include "formats/points/copc/writing/octree_rules.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A subtree of the octree, of records in memory.
 struct DividedRecords {
@@ -30,4 +30,4 @@ DividedRecords divide_records(std::span<const std::byte> records, std::size_t re
                               const NodeKey& top, const OctreeCube& cube, const OctreeRules& rules,
                               const WorkSharing& sharing);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

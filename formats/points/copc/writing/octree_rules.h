@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Which points a node of a written octree keeps, of those in its cube that no node above has: all,
 /// if these are few or it is one of the deepest; else a sample, which is the first point of each of
@@ -12,4 +14,4 @@ struct OctreeRules {
   unsigned sample_bits = 7;             ///< a node has 2^sample_bits sample cells along each axis
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

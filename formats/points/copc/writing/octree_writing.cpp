@@ -7,7 +7,7 @@
 
 #include "formats/points/copc/writing/octree_division.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 /// Records that are read, dealt or encoded at a time.
@@ -153,4 +153,4 @@ void OctreeWriting::write_large(RecordLists& lists, const OctreePart& part) {
   write_parts(dealing.lists(), dealing.parts());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

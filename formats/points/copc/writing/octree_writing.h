@@ -13,7 +13,7 @@
 #include "formats/points/copc/writing/octree_rules.h"
 #include "formats/points/copc/writing/record_lists.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// From records to the chunks of an octree's nodes, within a limit of memory.
 class OctreeWriting {
@@ -47,4 +47,4 @@ class OctreeWriting {
   std::uint64_t written_ = 0;  ///< records
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 RecordLists::RecordLists(ScratchFolder* scratch, std::size_t record_length, std::size_t lists,
                          const Limits& limits)
@@ -74,4 +74,4 @@ std::size_t RecordLists::read(std::size_t list, std::span<std::byte> room) {
   return got;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 
 #include "formats/disk/scratch_folder.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Lists of records of one length, in memory as far as that is allowed, then in a scratch file.
 /// Each is appended to, then read once.
@@ -61,4 +61,4 @@ class RecordLists {
   std::vector<List> lists_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

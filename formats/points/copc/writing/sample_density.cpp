@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kMostKept = std::size_t{1} << 16U;
@@ -52,4 +52,4 @@ unsigned SampleDensity::sample_bits(const OctreeCube& cube, std::uint64_t most_p
   return bits;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

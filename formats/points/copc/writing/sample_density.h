@@ -8,7 +8,7 @@
 
 #include "formats/points/copc/writing/octree_cube.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Chooses how many sample cells nodes have, by a few of the points: points of a surface meet few
 /// cells of a cube, those of a volume nearly all.
@@ -26,4 +26,4 @@ class SampleDensity {
   std::vector<std::array<std::int32_t, 3>> kept_;  // integers
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// Which sample cells of a node have a point.
 class SampleGrid {
@@ -29,4 +31,4 @@ class SampleGrid {
   std::vector<std::uint64_t> words_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -15,7 +15,7 @@
 #include "formats/points/las/records/las_fields.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using enum NumberType;
@@ -143,25 +143,27 @@ std::vector<AttributeField> las_extra_fields(std::span<const std::byte> descript
 std::vector<AttributeField> las_extra_fields_for(std::span<const Attribute> attributes,
                                                  std::size_t at) {
   if (attributes.size() > kMostDescriptors) {
-    throw Error(fmt::format("points have {} attributes of which LAS has no fields of its own, and "
-                            "it describes {} at most; write spp",
-                            attributes.size(), kMostDescriptors),
-                ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
+    throw Failure(
+        fmt::format("points have {} attributes of which LAS has no fields of its own, and "
+                    "it describes {} at most; write spp",
+                    attributes.size(), kMostDescriptors),
+        ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
   }
   std::vector<AttributeField> fields;
   for (const Attribute& attribute : attributes) {
     const bool bytes = attribute.type == kUint8 && attribute.elements <= kMostBytes;
     if (attribute.elements > kMostElements && !bytes) {
-      throw Error(fmt::format("LAS holds at most {} numbers of an attribute, and \"{}\" has {} of "
-                              "a point; write spp",
-                              kMostElements, attribute.name, attribute.elements),
-                  ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
+      throw Failure(
+          fmt::format("LAS holds at most {} numbers of an attribute, and \"{}\" has {} of "
+                      "a point; write spp",
+                      kMostElements, attribute.name, attribute.elements),
+          ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
     }
     if (attribute.name.size() > kText) {
-      throw Error(fmt::format("names of attributes in LAS have at most {} bytes, and \"{}\" has "
-                              "{}; write spp",
-                              kText, attribute.name, attribute.name.size()),
-                  ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
+      throw Failure(fmt::format("names of attributes in LAS have at most {} bytes, and \"{}\" has "
+                                "{}; write spp",
+                                kText, attribute.name, attribute.name.size()),
+                    ErrorCode::kInvalidArgument, {.remedy = Remedy::kAttributes});
     }
     fields.push_back({.attribute = attribute, .at = at});
     at += size_of(attribute);
@@ -186,4 +188,4 @@ std::vector<std::byte> las_extra_descriptors(std::span<const AttributeField> ext
   return all;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/points/las/las_header.h"
 #include "formats/points/las/records/las_flags.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 using enum NumberType;
@@ -160,4 +160,4 @@ AttributeLayout las_layout(int point_format, std::span<const AttributeField> ext
   return plain.at(point_format);
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -11,7 +11,7 @@
 
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// The fields of a point format, 0 to 10, in the order of the record, without extra bytes.
 std::vector<AttributeField> las_fields(int point_format);
@@ -22,7 +22,7 @@ std::vector<AttributeField> las_extra_fields(std::span<const std::byte> descript
                                              std::size_t bytes);
 
 /// The fields that extra bytes from byte `at` on have for these attributes, one after the other.
-/// Throws Error, which names no file, for an attribute that LAS cannot hold.
+/// Throws Failure, which names no file, for an attribute that LAS cannot hold.
 std::vector<AttributeField> las_extra_fields_for(std::span<const Attribute> attributes,
                                                  std::size_t at);
 
@@ -34,4 +34,4 @@ std::vector<std::byte> las_extra_descriptors(std::span<const AttributeField> ext
 /// All of them as attributes of a source.
 AttributeLayout las_layout(int point_format, std::span<const AttributeField> extra);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

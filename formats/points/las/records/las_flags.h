@@ -5,7 +5,7 @@
 
 #include "formats/points/attributes/attribute_layout.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// What LAS says of a point besides its coordinates that takes few layers of LAZ to know.
 struct LasFlags {
@@ -25,4 +25,4 @@ struct LasFlags {
 /// Its members as fields of a record.
 std::vector<AttributeField> las_flag_fields();
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

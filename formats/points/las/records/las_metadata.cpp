@@ -6,7 +6,7 @@
 
 #include "formats/points/las/las_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
@@ -70,4 +70,4 @@ std::shared_ptr<const LasMetadata> joined(std::span<const std::shared_ptr<const 
   return joined;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

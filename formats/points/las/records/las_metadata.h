@@ -11,7 +11,7 @@
 
 #include "formats/bytes/shared_text.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// A variable length record; extended: one behind the points.
 struct LasVlr {
@@ -61,4 +61,4 @@ inline constexpr std::uint16_t kLasWaveformsInBit = 0x02;   ///< waveforms lie b
 inline constexpr std::uint16_t kLasWaveformsOutBit = 0x04;  ///< they lie in a file of their own
 inline constexpr std::uint16_t kLasSyntheticBit = 0x08;     ///< return numbers are made up
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

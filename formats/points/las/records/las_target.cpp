@@ -8,7 +8,7 @@
 #include "formats/points/las/las_header.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 namespace {
 
 constexpr std::uint64_t kMostLegacyPoints = std::numeric_limits<std::uint32_t>::max();
@@ -109,7 +109,7 @@ LasTarget las_target(const std::string& file, const PointWriterOptions& options,
   }
   try {
     target.extra = las_extra_fields_for(others, kLasRecordLengths.at(target.point_format));
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     throw CannotWrite(file, error.what(), error.code(), {}, error.facts().remedy);
   }
   if (target.record_length() > kMostRecordBytes) {
@@ -122,4 +122,4 @@ LasTarget las_target(const std::string& file, const PointWriterOptions& options,
   return target;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

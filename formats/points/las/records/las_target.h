@@ -8,7 +8,7 @@
 #include "formats/points/common/point_writer.h"
 #include "formats/points/las/records/las_fields.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// Which LAS may be written.
 enum class LasProfile {
@@ -35,8 +35,8 @@ struct LasTarget {
 /// What holds the points that the options tell of: the point format of the inputs if all have one
 /// and the version allows it, else the least with all attributes; version 1.2 or 1.3, and 1.4 where
 /// inputs or the number of points need it, or the version is given. Without attributes, point
-/// format 0 or 6. Throws Error, which names `file`, if there is none.
+/// format 0 or 6. Throws Failure, which names `file`, if there is none.
 LasTarget las_target(const std::string& file, const PointWriterOptions& options,
                      LasProfile profile = LasProfile::kAny);
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void LasRecordUnpacking::unpack(std::span<const std::byte> records, std::size_t length,
                                 std::vector<std::byte>& out) const {
@@ -14,4 +14,4 @@ void LasRecordUnpacking::unpack(std::span<const std::byte> records, std::size_t 
   }
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

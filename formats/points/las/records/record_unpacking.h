@@ -7,7 +7,7 @@
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/record_conversion.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 /// LAS records as records of a layout of attributes. What LAS does not have is 0.
 class LasRecordUnpacking {
@@ -27,4 +27,4 @@ class LasRecordUnpacking {
   std::size_t size_ = 0;  ///< of a record of the layout
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -8,7 +8,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/las/las_header.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 
 void append_vlr(const LasVlr& record, std::vector<std::byte>& out) {
   constexpr std::size_t kUserField = 16;
@@ -32,4 +32,4 @@ void append_vlr(const LasVlr& record, std::vector<std::byte>& out) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

@@ -3,7 +3,7 @@
 #include "formats/points/laz/coding/laz_bytes.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 ArithmeticDecoder::ArithmeticDecoder(std::span<const std::byte> bytes, LazBytes* source)
     : source_(source) {
@@ -19,7 +19,7 @@ ArithmeticDecoder::Bytes ArithmeticDecoder::take(Bytes bytes, unsigned count, La
     if (bytes.next == bytes.end) {
       const std::span<const std::byte> more =
           source == nullptr ? std::span<const std::byte>() : source->more();
-      if (more.empty()) throw Error("the compressed stream ends too early");
+      if (more.empty()) throw Failure("the compressed stream ends too early");
       bytes.next = more.data();
       bytes.end = more.data() + more.size();
     }
@@ -28,6 +28,6 @@ ArithmeticDecoder::Bytes ArithmeticDecoder::take(Bytes bytes, unsigned count, La
   return bytes;
 }
 
-void ArithmeticDecoder::throw_corrupt() { throw Error("the compressed stream is corrupt"); }
+void ArithmeticDecoder::throw_corrupt() { throw Failure("the compressed stream is corrupt"); }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -8,16 +8,16 @@
 #include "formats/points/laz/coding/models.h"
 #include "formats/points/laz/coding/select.h"
 
-namespace spillway::detail {
+namespace spillway::formats {
 class LazBytes;
 }
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Decodes bits and symbols of one stream. The state is five words that are cheap to copy: loops
 /// work on a local copy, which the compiler keeps in registers; that is why nothing here lets the
 /// object's address out. Bytes come from a span, then from `source` if there is one, which is asked
-/// only when a byte is needed. A byte beyond the end is an Error.
+/// only when a byte is needed. A byte beyond the end is an Failure.
 class ArithmeticDecoder {
  public:
   ArithmeticDecoder() = default;
@@ -122,4 +122,4 @@ class ArithmeticDecoder {
   LazBytes* source_ = nullptr;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -3,7 +3,9 @@
 #include <array>
 #include <memory>
 
-namespace spillway::detail::laz {
+#include "src/rooms.h"
+
+namespace spillway::formats::laz {
 
 /// A context for each scanner channel, which begins in each chunk when the channel first comes.
 template <typename Context>
@@ -28,4 +30,4 @@ class ByChannel {
   std::array<bool, 4> came_{};
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail::laz {
+#include "src/rooms.h"
+
+namespace spillway::formats::laz {
 
 /// From this version on, items behind POINT14 know the channel of every point.
 inline constexpr int kKnowsChannel = 4;
@@ -73,4 +75,4 @@ class ChannelContexts {
   std::array<Context, 4> contexts_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -3,7 +3,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 template <bool kLayered, Keep kKeep>
 void GpsTimeDecoder<kLayered, kKeep>::reset(std::uint64_t first) {
@@ -25,7 +25,7 @@ void GpsTimeDecoder<kLayered, kKeep>::decode(ArithmeticDecoder& stream) {
   constexpr int kMostSwitches = 4;
   ArithmeticDecoder local = stream;
   for (int switches = 0;; ++switches) {
-    if (switches > kMostSwitches) throw Error("the compressed times are corrupt");
+    if (switches > kMostSwitches) throw Failure("the compressed times are corrupt");
     Sequence& sequence = sequences_[current_];
     if (sequence.difference == 0) {
       const unsigned kind = local.symbol(zero_.at(0)) + kLeftOut;
@@ -99,4 +99,4 @@ template class GpsTimeDecoder<true, Keep::kWhole>;
 template class GpsTime11V2<Keep::kNeeded>;
 template class GpsTime11V2<Keep::kWhole>;
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -8,7 +8,7 @@
 #include "formats/points/laz/coding/integer_decoder.h"
 #include "formats/points/laz/coding/pointwise_item.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Decodes GPS times as bit patterns: four sequences, as pulses of several scanners alternate, each
 /// running with a step of its own. `kLayered`: there is no symbol for a time that does not change.
@@ -54,4 +54,4 @@ class GpsTime11V2 final : public PointwiseItem {
   GpsTimeDecoder<false, kKeep> times_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

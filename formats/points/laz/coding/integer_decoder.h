@@ -6,7 +6,7 @@
 #include "formats/points/laz/coding/arithmetic_decoder.h"
 #include "formats/points/laz/coding/models.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Decodes integers of 8, 16 or 32 bits that lie near a prediction: how many bits the difference
 /// takes, by a model for each context, then its bits, by models for all contexts.
@@ -59,4 +59,4 @@ class IntegerDecoder {
   unsigned width_ = 0;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -4,7 +4,7 @@
 
 #include "formats/points/laz/coding/record_fields.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 std::int32_t median(const std::array<std::int32_t, 3>& of) {
@@ -194,4 +194,4 @@ template class WavePacket13<Keep::kWhole>;
 template class ByteV1<Keep::kNeeded>;
 template class ByteV1<Keep::kWhole>;
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -8,7 +8,7 @@
 #include "formats/points/laz/coding/integer_decoder.h"
 #include "formats/points/laz/coding/pointwise_item.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Differences of x and y are predicted by the median of the last three.
 template <Keep kKeep>
@@ -91,4 +91,4 @@ class ByteV1 final : public PointwiseItem {
   IntegerDecoder<8> decoder_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

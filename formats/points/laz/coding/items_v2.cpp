@@ -5,7 +5,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/coding/return_tables.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 /// The six bytes of the last colour, which become those of the next one.
@@ -146,4 +146,4 @@ template class Rgb12V2<Keep::kWhole>;
 template class ByteV2<Keep::kNeeded>;
 template class ByteV2<Keep::kWhole>;
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -9,7 +9,7 @@
 #include "formats/points/laz/coding/pointwise_item.h"
 #include "formats/points/laz/coding/streaming_median.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// The attributes come first, so that returns of a kind predict each other's coordinates.
 template <Keep kKeep>
@@ -58,4 +58,4 @@ class ByteV2 final : public PointwiseItem {
   SymbolModels<256> differences_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

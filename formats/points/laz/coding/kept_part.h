@@ -5,7 +5,7 @@
 
 #include "formats/points/laz/coding/record_fields.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// What items keep of the values that they decode.
 enum class Keep {
@@ -45,4 +45,4 @@ class KeptPart {
   std::byte* bytes_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

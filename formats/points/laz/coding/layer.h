@@ -6,7 +6,7 @@
 #include "formats/points/laz/coding/arithmetic_decoder.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// A layer of a chunk: a stream of its own.
 struct Layer {
@@ -22,8 +22,8 @@ struct Layer {
 
   /// Checks that it has been read to its end.
   void end() const {
-    if (!stream.rest().empty()) throw Error("a compressed layer is longer than its points");
+    if (!stream.rest().empty()) throw Failure("a compressed layer is longer than its points");
   }
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -4,7 +4,7 @@
 #include "formats/points/laz/coding/items_v2.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 /// An item of one layer, which has the symbols of a pointwise one.
@@ -85,8 +85,8 @@ std::unique_ptr<LayeredItem> make_layered_item(const LazItem& item) {
     case LazItemType::kByte14:
       return std::make_unique<ByteLayers>(item.size);
     default:
-      throw Error("the compressed record has a part that does not belong there");
+      throw Failure("the compressed record has a part that does not belong there");
   }
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

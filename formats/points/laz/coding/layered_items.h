@@ -8,7 +8,7 @@
 #include "formats/points/las/laz_record.h"
 #include "formats/points/laz/coding/layer.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// The models of an item behind POINT14 in one scanner channel.
 class LayeredItem {
@@ -21,7 +21,7 @@ class LayeredItem {
   virtual void decode(std::span<Layer> layers, std::byte* part) = 0;
 };
 
-/// Throws Error for an item that is not layered.
+/// Throws Failure for an item that is not layered.
 std::unique_ptr<LayeredItem> make_layered_item(const LazItem& item);
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

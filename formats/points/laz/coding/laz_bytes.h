@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <span>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::formats {
 
 /// The bytes of chunks, span by span.
 class LazBytes {
@@ -13,4 +15,4 @@ class LazBytes {
   virtual std::span<const std::byte> more() = 0;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::formats

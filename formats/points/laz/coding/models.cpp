@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 constexpr std::uint32_t kMostBits = 1U << 13U;
@@ -50,4 +50,4 @@ void ModelCycle::renew(std::uint16_t* counts, std::uint16_t* upper) {
   until_update = cycle;
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -12,7 +12,7 @@
 
 #include "formats/points/laz/coding/select.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// The likelihood of a bit.
 class BitModel {
@@ -165,4 +165,4 @@ class SymbolModels {
   std::uint64_t chunk_ = 1;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -6,7 +6,7 @@
 #include "formats/points/laz/coding/return_tables.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 enum LayerIndex : unsigned { kXyLayer, kZLayer, kClassLayer, kFlagsLayer };
@@ -59,7 +59,7 @@ std::span<const std::byte> Point14Layers::begin(const Point14& first,
                                                 std::span<const std::byte> layers,
                                                 std::span<const std::size_t, kLayers> sizes,
                                                 std::uint64_t count) {
-  if (count > 1 && sizes[kXyLayer] == 0) throw Error("the compressed chunk has no coordinates");
+  if (count > 1 && sizes[kXyLayer] == 0) throw Failure("the compressed chunk has no coordinates");
   for (std::size_t i = 0; i < kLayers; ++i) layers = layers_[i].begin(layers, sizes[i]);
   contexts_.reset();
   current_ = &contexts_.use(first.channel, first);
@@ -138,4 +138,4 @@ void Point14Layers::end() const {
   for (const Layer& layer : layers_) layer.end();
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

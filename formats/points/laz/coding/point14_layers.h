@@ -11,7 +11,7 @@
 #include "formats/points/laz/coding/layer.h"
 #include "formats/points/laz/coding/streaming_median.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// What the first layers hold of the first 30 bytes of a record.
 struct Point14 {
@@ -89,4 +89,4 @@ class Point14Layers {
   Context* current_ = nullptr;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -2,7 +2,7 @@
 
 #include "formats/points/laz/coding/record_fields.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 enum LayerIndex : unsigned { kIntensityLayer, kAngleLayer, kUserLayer, kSourceLayer, kTimeLayer };
@@ -71,4 +71,4 @@ void Point14OtherLayers::end() const {
   for (const Layer& layer : layers_) layer.end();
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -12,7 +12,7 @@
 #include "formats/points/laz/coding/layer.h"
 #include "formats/points/laz/coding/point14_layers.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Decodes intensity, scan angle, user data, point source and GPS time: what only whole records
 /// need of their first 30 bytes.
@@ -58,4 +58,4 @@ class Point14OtherLayers {
   Context* current_ = nullptr;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -2,7 +2,7 @@
 
 #include "formats/points/laz/coding/record_fields.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 Point10 Point10::of_record(const std::byte* record) {
   Point10 point;
@@ -24,4 +24,4 @@ void Point10::store_in(std::byte* record) const {
   store(record + core10::kUser, user);
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

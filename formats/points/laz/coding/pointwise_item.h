@@ -6,7 +6,7 @@
 #include "formats/points/laz/coding/arithmetic_decoder.h"
 #include "formats/points/laz/coding/kept_part.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// A part of the record in a pointwise chunk. All parts share one stream, so each takes its symbols
 /// for every point, whatever it keeps.
@@ -46,4 +46,4 @@ class Point10Item : public PointwiseItem {
   Point10 point_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

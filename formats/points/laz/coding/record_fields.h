@@ -6,7 +6,7 @@
 
 #include "formats/bytes/bytes.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 inline constexpr std::size_t kX = 0;
 inline constexpr std::size_t kY = 4;
@@ -71,4 +71,4 @@ inline std::int64_t difference64(std::uint64_t a, std::uint64_t b) {
 
 inline bool fits_32_bits(std::int64_t value) { return value == static_cast<std::int32_t>(value); }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

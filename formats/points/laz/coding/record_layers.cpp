@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 RecordLayers::RecordLayers(const LazChunkFormat& format)
     : knows_channel_(format.items.front().version >= kKnowsChannel) {
@@ -49,4 +49,4 @@ void RecordLayers::end() const {
   }
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

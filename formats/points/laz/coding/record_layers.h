@@ -10,7 +10,7 @@
 #include "formats/points/laz/coding/point14_layers.h"
 #include "formats/points/laz/coding/point14_other_layers.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// The layers of a chunk that only whole records need: all after those of Point14Layers.
 class RecordLayers {
@@ -41,4 +41,4 @@ class RecordLayers {
   std::vector<Item> items_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 
-namespace spillway::detail::laz {
+#include "src/rooms.h"
+
+namespace spillway::formats::laz {
 
 /// For return numbers of 3 bits, 0 to 15.
 inline constexpr std::array<std::array<std::uint8_t, 8>, 8> kReturnMap8{{
@@ -44,4 +46,4 @@ constexpr unsigned return_level(unsigned returns, unsigned number) {
   return distance < 7 ? distance : 7;
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

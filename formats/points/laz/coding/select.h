@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-namespace spillway::detail::laz {
+#include "src/rooms.h"
+
+namespace spillway::formats::laz {
 
 /// `yes` if a < b, else `no`, without a branch: for conditions that no branch predictor knows.
 /// Compilers are too fond of branches to be asked in C++.
@@ -19,4 +21,4 @@ namespace spillway::detail::laz {
 #endif
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstdint>
 
-namespace spillway::detail::laz {
+#include "src/rooms.h"
+
+namespace spillway::formats::laz {
 
 /// A running median of five: a new value pushes out the largest or the smallest in turn. Sorting is
 /// a row of minima and maxima without a branch, as the values are noise to a branch predictor.
@@ -31,4 +33,4 @@ class StreamingMedian {
   bool drop_largest_ = true;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

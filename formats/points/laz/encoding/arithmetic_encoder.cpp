@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 void ArithmeticEncoder::finish(std::vector<std::byte>& out) {
   // The decoder is four bytes ahead: those that end the interval, and zeros that nobody looks at.
@@ -27,4 +27,4 @@ void ArithmeticEncoder::carry() {
 
 void ArithmeticEncoder::grow() { bytes_.resize(std::max<std::size_t>(1024, 2 * bytes_.size())); }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

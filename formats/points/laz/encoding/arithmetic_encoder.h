@@ -8,7 +8,7 @@
 #include "formats/points/laz/coding/models.h"
 #include "formats/points/laz/coding/select.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Writes bits and symbols as one stream, which ArithmeticDecoder reads. A carry may change bytes
 /// that are already written, so a stream stays in memory until it ends.
@@ -88,4 +88,4 @@ class ArithmeticEncoder {
   std::vector<std::byte> bytes_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -3,7 +3,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/item_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 constexpr int kLargest = 500;          // multiple of a step; above follow -1, -2, ...
@@ -131,4 +131,4 @@ void GpsTimeSequences::begin_sequence(ArithmeticEncoder& stream, std::uint64_t t
   sequences_[current_] = {.time = time};
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -6,7 +6,7 @@
 
 #include "formats/points/laz/encoding/integer_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Encodes GPS times as bit patterns: up to four interleaved sequences, each running with a step of
 /// its own. Item version 2, and the layer of POINT14.
@@ -43,4 +43,4 @@ class GpsTimeSequences {
   IntegerEncoder<32> differences_{9};
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -7,7 +7,7 @@
 
 #include "formats/points/laz/encoding/arithmetic_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Encodes integers of 8, 16 or 32 bits by their difference from a prediction, as IntegerDecoder
 /// decodes them.
@@ -65,4 +65,4 @@ class IntegerEncoder {
   unsigned width_ = 0;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -4,7 +4,7 @@
 #include "formats/points/laz/encoding/integer_encoder.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 class WavePacketEncoder final : public ItemEncoder {
@@ -93,7 +93,7 @@ std::unique_ptr<ItemEncoder> make_bytes_encoder(std::size_t bytes) {
 
 std::unique_ptr<ItemEncoder> make_item_encoder(const LazItem& item) {
   if (item.version != (item.type == LazItemType::kWavePacket13 ? 1 : 2)) {
-    throw Error("this version of a compressed item is not written");
+    throw Failure("this version of a compressed item is not written");
   }
   switch (item.type) {
     case LazItemType::kPoint10:
@@ -107,8 +107,8 @@ std::unique_ptr<ItemEncoder> make_item_encoder(const LazItem& item) {
     case LazItemType::kByte:
       return make_bytes_encoder(item.size);
     default:
-      throw Error("this part of a compressed record is not pointwise");
+      throw Failure("this part of a compressed record is not pointwise");
   }
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -7,7 +7,7 @@
 #include "formats/points/las/laz_record.h"
 #include "formats/points/laz/encoding/arithmetic_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// The models of one part of a record: of a pointwise item, or of a layer after the first nine.
 class ItemEncoder {
@@ -19,7 +19,7 @@ class ItemEncoder {
   virtual void encode(ArithmeticEncoder& stream, const std::byte* part, const std::byte* last) = 0;
 };
 
-/// Throws Error for an item that is not pointwise, and for versions that are not written.
+/// Throws Failure for an item that is not pointwise, and for versions that are not written.
 std::unique_ptr<ItemEncoder> make_item_encoder(const LazItem& item);
 
 std::unique_ptr<ItemEncoder> make_point10_encoder();
@@ -33,4 +33,4 @@ std::unique_ptr<ItemEncoder> make_wave_packet_encoder();
 /// Also a layer of Byte14, with one byte.
 std::unique_ptr<ItemEncoder> make_bytes_encoder(std::size_t bytes);
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -5,7 +5,7 @@
 
 #include "formats/points/laz/encoding/arithmetic_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// One layer of a chunk.
 struct LayerStream {
@@ -23,4 +23,4 @@ struct LayerStream {
   }
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -5,7 +5,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "src/error.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 std::unique_ptr<ItemEncoder> make_byte_encoder() { return make_bytes_encoder(1); }
@@ -30,7 +30,7 @@ void add_layers(std::vector<LayerEncoder>& layers, const LazItem& item, std::siz
       for (std::size_t i = 0; i < item.size; ++i) add(i, 1, make_byte_encoder);
       break;
     default:
-      throw Error("this part of a compressed record is not layered");
+      throw Failure("this part of a compressed record is not layered");
   }
 }
 
@@ -77,4 +77,4 @@ std::vector<LayerStream*> LayeredRecords::layers() {
   return layers;
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -11,7 +11,7 @@
 #include "formats/points/laz/encoding/layer_stream.h"
 #include "formats/points/laz/encoding/point14_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// One layer behind POINT14: a part of the record, with a context for each scanner channel.
 class LayerEncoder {
@@ -52,4 +52,4 @@ class LayeredRecords {
   std::vector<LayerEncoder> others_;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

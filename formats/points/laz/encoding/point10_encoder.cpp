@@ -7,7 +7,7 @@
 #include "formats/points/laz/encoding/integer_encoder.h"
 #include "formats/points/laz/encoding/item_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 class Point10Encoder final : public ItemEncoder {
@@ -105,4 +105,4 @@ class Point10Encoder final : public ItemEncoder {
 
 std::unique_ptr<ItemEncoder> make_point10_encoder() { return std::make_unique<Point10Encoder>(); }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

@@ -9,7 +9,7 @@
 #include "formats/points/laz/encoding/gps_time_encoder.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 unsigned return_number(const std::byte* point) { return byte_at(point, kReturns) & 15U; }
@@ -218,4 +218,4 @@ void Point14Encoder::encode_rest(const std::byte* point, const Pulse& pulse) {
   }
 }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

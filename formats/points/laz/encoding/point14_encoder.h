@@ -7,7 +7,7 @@
 #include "formats/points/laz/coding/by_channel.h"
 #include "formats/points/laz/encoding/layer_stream.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 
 /// Where the scanner channel of a point is, and whether it changed with it.
 struct ChannelStep {
@@ -55,4 +55,4 @@ class Point14Encoder {
   unsigned channel_ = 0;
 };
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

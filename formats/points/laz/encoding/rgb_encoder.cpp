@@ -3,7 +3,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/item_encoder.h"
 
-namespace spillway::detail::laz {
+namespace spillway::formats::laz {
 namespace {
 
 /// A bit for each of the first bytes that differs.
@@ -77,4 +77,4 @@ std::unique_ptr<ItemEncoder> make_rgb_encoder() { return std::make_unique<RgbEnc
 
 std::unique_ptr<ItemEncoder> make_nir_encoder() { return std::make_unique<NirEncoder>(); }
 
-}  // namespace spillway::detail::laz
+}  // namespace spillway::formats::laz

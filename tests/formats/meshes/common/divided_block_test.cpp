@@ -7,7 +7,7 @@
 #include "formats/meshes/spm/spm_format.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 /// A strip in one block, its simplices in any order, which then uses any vertices besides.
@@ -48,10 +48,10 @@ TEST(DividedBlock, IsTheSameMesh) {
 }
 
 TEST(DividedBlock, FinalizesVerticesWhereTheyAreUsedLast) {
-  MeshBlock whole;
+  MeshStreamBlock whole;
   whole.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {5, 5, 5}};
   whole.corners = {1, 3, 2, 0, 1, 2};
-  const std::vector<MeshBlock> blocks = divided(whole, 3, 0, 2);
+  const std::vector<MeshStreamBlock> blocks = divided(whole, 3, 0, 2);
   ASSERT_EQ(blocks.size(), 3U);
   EXPECT_TRUE(blocks[0].corners.empty());
   EXPECT_TRUE(blocks[0].finalized.empty());
@@ -62,4 +62,4 @@ TEST(DividedBlock, FinalizesVerticesWhereTheyAreUsedLast) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

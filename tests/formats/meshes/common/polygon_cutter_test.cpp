@@ -12,7 +12,7 @@
 #include "formats/meshes/common/polygon_outline.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -173,4 +173,4 @@ TEST(PolygonOutline, AreDecidedExactly) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

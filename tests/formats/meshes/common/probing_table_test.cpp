@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 struct Key {
@@ -17,7 +17,7 @@ struct Key {
 };
 
 TEST(ProbingTableTest, FindsWhatIsThereAndNothingElseAfterManyErasures) {
-  ProbingTable<Key> table;
+  detail::ProbingTable<Key> table;
   std::vector<bool> there(401);
   std::mt19937 random(2);  // NOLINT(bugprone-random-generator-seed)
   for (int step = 0; step < 5000; ++step) {
@@ -37,4 +37,4 @@ TEST(ProbingTableTest, FindsWhatIsThereAndNothingElseAfterManyErasures) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

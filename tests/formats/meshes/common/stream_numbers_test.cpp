@@ -5,13 +5,13 @@
 
 #include "formats/meshes/common/mesh_block.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
 
 TEST(StreamNumbers, NewVerticesComeBeforeImportedOnes) {
-  MeshBlock block;
+  MeshStreamBlock block;
   block.vertices.resize(2);
   block.imported = {5, 3};
   const StreamNumbers numbers(100, block);
@@ -23,7 +23,7 @@ TEST(StreamNumbers, NewVerticesComeBeforeImportedOnes) {
 }
 
 TEST(StreamNumbers, AreAppendedToTheCornersOfAMesh) {
-  MeshBlock block;
+  MeshStreamBlock block;
   block.vertices.resize(1);
   block.imported = {0, 1};
   block.corners = {0, 1, 2, 2, 1, 0};
@@ -33,4 +33,4 @@ TEST(StreamNumbers, AreAppendedToTheCornersOfAMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -9,14 +9,14 @@
 
 #include "formats/meshes/common/import_check.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
 
-MeshBlock block_of(std::size_t fresh, std::vector<std::uint64_t> imported,
-                   std::vector<std::uint32_t> finalized) {
-  MeshBlock block;
+MeshStreamBlock block_of(std::size_t fresh, std::vector<std::uint64_t> imported,
+                         std::vector<std::uint32_t> finalized) {
+  MeshStreamBlock block;
   block.vertices.resize(fresh);
   block.imported = std::move(imported);
   block.finalized = std::move(finalized);
@@ -29,7 +29,7 @@ TEST(StreamVertices, AreThoseThatABlockAnnouncesAndNoneFinalizes) {
   EXPECT_EQ(live.announced(), 4U);
   EXPECT_EQ(live.size(), 3U);
   EXPECT_FALSE(live.contains(1));
-  const MeshBlock next = block_of(1, {3, 0}, {0, 2});
+  const MeshStreamBlock next = block_of(1, {3, 0}, {0, 2});
   std::vector<char> values = {'e'};
   live.append_imported(next, values);
   EXPECT_THAT(values, ElementsAre('e', 'd', 'a'));
@@ -68,7 +68,7 @@ TEST(StreamVertices, OfALongStreamAreThoseOfASet) {
   std::set<std::uint64_t> expected;
   std::mt19937 random(5);  // NOLINT(bugprone-random-generator-seed)
   for (int step = 0; step < 300; ++step) {
-    MeshBlock block = block_of(random() % 40, {}, {});
+    MeshStreamBlock block = block_of(random() % 40, {}, {});
     const std::uint64_t first = live.announced();
     for (const std::uint64_t number : expected) {
       if (random() % 3 == 0) block.imported.push_back(number);
@@ -103,4 +103,4 @@ TEST(ImportCheck, TakesEachLiveVertexOnceABlock) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -2,7 +2,7 @@
 #include "formats/meshes/sma/sma_reader.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -137,7 +137,7 @@ TEST(Sma, EveryByteChangedGivesAMeshOrAnError) {
       bytes[at] = static_cast<char>(bytes[at] ^ change);
       try {
         flat(read_stream("a.sma", bytes));
-      } catch (const Error&) {
+      } catch (const Failure&) {
         continue;
       }
     }
@@ -169,4 +169,4 @@ TEST(Sma, IsToldFromObjAndReadAsAWholeMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

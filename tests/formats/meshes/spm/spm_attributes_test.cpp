@@ -7,7 +7,7 @@
 #include "formats/points/spp/spp_attributes.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -22,7 +22,7 @@ AttributeLayout all_kinds() {
 void add_any_attributes(StreamedMesh& mesh) {
   mesh.header.attributes = all_kinds();
   std::mt19937 random(5);
-  for (MeshBlock& block : mesh.blocks) {
+  for (MeshStreamBlock& block : mesh.blocks) {
     block.attributes.resize(block.vertices.size() * all_kinds().record_size());
     for (std::byte& byte : block.attributes) byte = static_cast<std::byte>(random());
   }
@@ -113,7 +113,7 @@ TEST(SpmAttributes, ABlockWithRecordsOfAnotherSizeIsRefused) {
       try {
         stream_bytes(mesh, kSpmMesh, absorb);
         ADD_FAILURE() << "no error";
-      } catch (const Error& error) {
+      } catch (const Failure& error) {
         EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
         EXPECT_THAT(error.what(), HasSubstr("a block has 5 vertices with"));
       }
@@ -182,4 +182,4 @@ TEST(SpmAttributes, TruncatedAnywhereIsAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

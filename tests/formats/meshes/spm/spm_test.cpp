@@ -15,7 +15,7 @@
 #include "src/generators/generators.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -60,7 +60,7 @@ TEST(Spm, RoundTripOfTheHeader) {
 TEST(Spm, LatticeThatDoesNotKeepVerticesApart) {
   for (const double offset : {1e15, 1e305}) {
     StreamedMesh mesh = strip(2, 10, 4);
-    mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {0, offset, 0}};
+    mesh.header.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {0, offset, 0}};
     const std::string bytes = stream_bytes(mesh, kSpmMesh);
     EXPECT_THAT(error_of_stream("a.spm", bytes),
                 AllOf(HasSubstr("byte"), HasSubstr("y is an integer times 0.01 plus")));
@@ -111,7 +111,7 @@ TEST(Spm, PrepareFreesWhatItHasEncoded) {
 TEST(Spm, LargeAndClosedFansComeBack) {
   for (const std::uint32_t degree : {3U, 4U, 14U, 15U, 16U, 24U, 25U, 300U, 70000U}) {
     StreamedMesh mesh;
-    MeshBlock& block = mesh.blocks.emplace_back();
+    MeshStreamBlock& block = mesh.blocks.emplace_back();
     block.vertices.reserve(degree + 1);
     for (std::uint32_t i = 0; i <= degree; ++i) block.vertices.push_back({double(i), 1, 0});
     for (std::uint32_t i = 0; i < degree; ++i) {
@@ -129,14 +129,14 @@ TEST(Spm, LargeAndClosedFansComeBack) {
 
 /// A block of LiDAR-like terrain, triangulated, its vertices in the triangulation's order.
 StreamedMesh terrain_block(std::size_t count) {
-  const auto points = generate_points<3>({.family = Family::kTerrain, .count = count});
+  const auto points = generated_points<3>({.family = Family::kTerrain, .count = count});
   std::vector<Point<2>> flat_points;
   flat_points.reserve(points.size());
   for (const Point<3>& p : points) flat_points.push_back({p[0], p[1]});
-  const Triangulation<2> triangulation = delaunay<2>(flat_points, {.threads = 1});
+  const Triangulation<2> triangulation = delaunay_triangulation<2>(flat_points, {.threads = 1});
   StreamedMesh mesh;
-  mesh.header.lattice = Lattice{{0.01, 0.01, 0.01}, {500000, 4100000, 0}};
-  MeshBlock& block = mesh.blocks.emplace_back();
+  mesh.header.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {500000, 4100000, 0}};
+  MeshStreamBlock& block = mesh.blocks.emplace_back();
   for (const VertexId index : triangulation.input_index) block.vertices.emplace_back(points[index]);
   triangulation.for_each_simplex([&](SimplexId, const Simplex<2>& simplex) {
     if (simplex.infinite()) return;
@@ -275,7 +275,7 @@ TEST(Spm, WriterRefusesWhatCannotBeRead) {
   mesh.blocks[0].vertices[1][2] = NAN;
   EXPECT_THAT(error_of_writing(mesh), HasSubstr("not finite"));
   mesh = two_triangles();
-  mesh.header.lattice = Lattice{};
+  mesh.header.lattice = IntegerLattice{};
   mesh.blocks[0].vertices[1][0] = 0.5;
   EXPECT_THAT(error_of_writing(mesh), HasSubstr("not an integer"));
   mesh = two_triangles();
@@ -379,10 +379,10 @@ TEST(Spm, EveryByteOfAContentChangedGivesAMeshOrAnError) {
         FaultyFileSystem files;
         files.files["a"] = stream_of({{kSpmHeader, header}, {kSpmMeshBlock, changed}});
         const auto reader = open_mesh_stream_reader(files, "a", "spm");
-        MeshBlock block;
+        MeshStreamBlock block;
         try {
           reader->read(block);
-        } catch (const Error&) {
+        } catch (const Failure&) {
           continue;
         }
         for (const std::uint32_t corner : block.corners) ASSERT_LT(corner, block.vertices.size());
@@ -423,4 +423,4 @@ TEST(Spm, IsKnownByItsMagicAndReadAsAWholeMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -15,7 +15,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -153,7 +153,7 @@ std::string error_of_bytes(std::span<const std::byte> bytes, std::uint32_t numbe
   Corners read;
   try {
     read_tetrahedra(bytes, numbers, tetrahedra, read, {"here"});
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return "";
@@ -201,7 +201,7 @@ TEST(SpmTetrahedra, EveryByteChangedGivesTetrahedraOrAnError) {
         Corners read;
         try {
           read_tetrahedra(bytes, 251, 200, read, {"here"});
-        } catch (const Error&) {
+        } catch (const Failure&) {
           continue;
         }
         ASSERT_EQ(read.size(), 800U);
@@ -212,4 +212,4 @@ TEST(SpmTetrahedra, EveryByteChangedGivesTetrahedraOrAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

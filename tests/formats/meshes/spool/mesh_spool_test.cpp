@@ -3,7 +3,7 @@
 
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -21,7 +21,7 @@ TEST(MeshSpool, CanBeReadAnyNumberOfTimesWhereverItLies) {
       const auto reader = spool.open();
       StreamedMesh read;
       read.header = reader->header();
-      MeshBlock block;
+      MeshStreamBlock block;
       while (reader->read(block)) read.blocks.push_back(block);
       EXPECT_EQ(flat(read), flat(mesh));
       EXPECT_EQ(reader->totals(), mesh.totals);
@@ -44,4 +44,4 @@ TEST(MeshSpool, NamesTheOutputWhereTotalsAreNotWhatCame) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

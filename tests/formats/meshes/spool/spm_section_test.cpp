@@ -5,7 +5,7 @@
 #include "formats/bytes/bytes.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 void append(std::string& stream, std::span<const std::byte> bytes) { stream += as_text(bytes); }
@@ -46,8 +46,8 @@ TEST(SpmSections, OneBehindTheOtherAndABlockThatJoinsThemAreAStream) {
   add_input_index(mesh);
   // Vertices that the last block is to use must not be finalized before.
   StreamedMesh section = mesh;
-  for (MeshBlock& block : section.blocks) block.finalized.clear();
-  MeshBlock joint;
+  for (MeshStreamBlock& block : section.blocks) block.finalized.clear();
+  MeshStreamBlock joint;
   joint.vertices = {{-5, -7, 0.5}};
   joint.input_index = {77};
   joint.imported = {499, 70'000 + 3};
@@ -94,4 +94,4 @@ TEST(SpmSections, ASectionWithoutBlocksIsEmpty) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

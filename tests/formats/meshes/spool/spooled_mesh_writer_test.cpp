@@ -12,7 +12,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -142,4 +142,4 @@ TEST(SpooledMeshWriter, AFullDiskIsReported) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/export_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ class TestFolder {
  public:
   TestFolder() {
     std::string path = (fs::temp_directory_path() / "mesh_export_XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr) throw Error("no temporary folder");
+    if (::mkdtemp(path.data()) == nullptr) throw Failure("no temporary folder");
     path_ = path;
   }
   ~TestFolder() { fs::remove_all(path_); }
@@ -266,4 +266,4 @@ TEST(VectorMesh, GeoJsonRefusesWhatIsNoPlaceOnTheEarth) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/broken_files.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -383,7 +383,7 @@ TEST(VtuReader, FieldsOfSpillwayAreReadInAnyStyle) {
     file.array<double>("Float64", "NumberOfComponents=\"3\"", {10.5, 20, 0});
     file.section("");
     const Mesh mesh = read_both(file.text(1, 0));
-    EXPECT_EQ(mesh.header.lattice, (Lattice{{0.5, 0.5, 1}, {10, 20, 0}}));
+    EXPECT_EQ(mesh.header.lattice, (IntegerLattice{{0.5, 0.5, 1}, {10, 20, 0}}));
     EXPECT_EQ(mesh.header.crs, "EP");
   }
 }
@@ -509,4 +509,4 @@ TEST(VtuReader, ArraysThatAreMissing) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

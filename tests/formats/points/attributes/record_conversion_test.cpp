@@ -9,7 +9,7 @@
 
 #include "formats/points/attributes/attribute_names.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using enum NumberType;
@@ -130,4 +130,4 @@ TEST(AttributeNames, OfOtherProgramsAreThoseOfLas) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

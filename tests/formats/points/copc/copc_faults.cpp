@@ -15,7 +15,7 @@
 #include "src/error.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kHeader = 375;
@@ -220,7 +220,7 @@ class Validation {
             return chunk.offset == n.offset && chunk.bytes == static_cast<unsigned>(n.bytes) &&
                    chunk.count == static_cast<unsigned>(n.count);
           });
-    } catch (const Error&) {
+    } catch (const Failure&) {
     }
     require(same, "the chunk table lists the nodes");
   }
@@ -253,7 +253,7 @@ class Validation {
     std::vector<Point> all;
     try {
       all = points();
-    } catch (const Error&) {
+    } catch (const Failure&) {
     }
     if (!require(all.size() == count(), "the header counts the points")) return;
     std::array<std::uint64_t, 16> returns{};
@@ -312,4 +312,4 @@ class Validation {
 
 std::vector<std::string> copc_faults(const std::string& file) { return Validation(file).run(); }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

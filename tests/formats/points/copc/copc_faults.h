@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// The rules that the file breaks, in the words of copc_faults.cpp; none if it is valid.
 std::vector<std::string> copc_faults(const std::string& file);
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

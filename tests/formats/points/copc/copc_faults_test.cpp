@@ -9,7 +9,7 @@
 
 #include "tests/formats/points/copc/written_copc.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -133,4 +133,4 @@ TEST(CopcFaults, AreSeenForEachRule) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A COPC file made from nodes; the octree lies open, as in LazFile.
 struct CopcFile {
@@ -127,4 +127,4 @@ struct CopcFile {
   }
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

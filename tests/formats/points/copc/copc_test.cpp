@@ -6,7 +6,7 @@
 #include "tests/formats/points/copc/copc_file.h"
 #include "tests/formats/shared_data.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -103,7 +103,7 @@ std::size_t expect_selection(const std::string& file, const std::optional<Box<3>
 
 /// The nodes are the regions of the file: with their counts, and all of their points in their cube.
 void expect_regions(const std::string& file) {
-  testing::TemporaryFiles files;
+  test::TemporaryFiles files;
   const auto reader = open_point_reader(disk(), files.put("regions.copc.laz", file), {});
   const std::vector<PointRegion>& regions = reader->header().regions;
   ASSERT_EQ(regions.size(), reader->pieces());
@@ -382,4 +382,4 @@ TEST(CopcCorruption, CountIsNotThatOfTheChunk) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -17,7 +17,7 @@
 #include "tests/formats/points/copc/written_copc.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -115,7 +115,7 @@ std::map<Key, Points> sorted(std::map<Key, Points> nodes) {
 }
 
 /// Nodes that others are below have a point in each cube of the spacing of their level at most.
-void expect_samples(const std::string& file, const Lattice& lattice) {
+void expect_samples(const std::string& file, const IntegerLattice& lattice) {
   const auto nodes = nodes_of(file);
   const auto centre = value_at<std::array<double, 3>>(file, kInfo);
   const auto halfsize = value_at<double>(file, kInfo + 24);
@@ -143,12 +143,12 @@ void expect_samples(const std::string& file, const Lattice& lattice) {
 struct PointSet {
   std::string name;
   Points points;
-  Lattice lattice{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
+  IntegerLattice lattice{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 };
 
 std::vector<PointSet> point_sets() {
-  const Lattice mixed{{0.01, 0.01, 0.001}, {500000, 4000000, 0}};
-  const Lattice coarse{{1, 0.25, 0.5}, {-7, 0, 1e6}};
+  const IntegerLattice mixed{{0.01, 0.01, 0.001}, {500000, 4000000, 0}};
+  const IntegerLattice coarse{{1, 0.25, 0.5}, {-7, 0, 1e6}};
   Points line(120'000);
   for (std::size_t i = 0; i < line.size(); ++i) line[i] = {double(i), double(2 * i), -double(i)};
   return {{"none", {}},
@@ -194,14 +194,15 @@ TEST(CopcWriter, NodesOfAVolumeAreAsSmallAsThoseOfASurface) {
 
 TEST(CopcWriter, APromisedNumberIsHeldTo) {
   const Points points = random_points(1000, {100, 100, 100});
-  EXPECT_EQ(written_copc(points, {.count = 1000, .lattice = Lattice{}}), written_copc(points));
-  EXPECT_THAT(error_of([&] { written_copc(points, {.count = 999, .lattice = Lattice{}}); }),
+  EXPECT_EQ(written_copc(points, {.count = 1000, .lattice = IntegerLattice{}}),
+            written_copc(points));
+  EXPECT_THAT(error_of([&] { written_copc(points, {.count = 999, .lattice = IntegerLattice{}}); }),
               HasSubstr("999"));
 }
 
 /// Options by which all but few records wait in scratch files.
 PointWriterOptions in_little_memory(ScratchFolder& scratch) {
-  return {.lattice = Lattice{}, .scratch = &scratch};
+  return {.lattice = IntegerLattice{}, .scratch = &scratch};
 }
 
 TEST(CopcWriter, LittleMemoryGivesTheSameNodes) {
@@ -221,7 +222,7 @@ TEST(CopcWriter, ThreadsChangeNoByte) {
   const auto scratch = make_scratch_folder("", std::nullopt);
   const std::string alone_on_disk = written_copc(points, in_little_memory(*scratch));
   for (const std::size_t threads : {2, 5}) {
-    PointWriterOptions options{.lattice = Lattice{}, .sharing = shared_by(threads)};
+    PointWriterOptions options{.lattice = IntegerLattice{}, .sharing = shared_by(threads)};
     EXPECT_TRUE(written_copc(points, options) == alone);
     options = in_little_memory(*scratch);
     options.sharing = shared_by(threads);
@@ -252,7 +253,8 @@ TEST(CopcWriter, APipeGetsWhatAFileGets) {
   const auto scratch = make_scratch_folder("", std::nullopt);
   FaultyFileSystem files;
   files.seekable = false;
-  PointWriterOptions options{.format = "copc", .lattice = Lattice{}, .scratch = scratch.get()};
+  PointWriterOptions options{
+      .format = "copc", .lattice = IntegerLattice{}, .scratch = scratch.get()};
   const auto writer = open_point_writer(files, "-", options);
   writer->write(points, {});
   writer->finish();
@@ -262,30 +264,33 @@ TEST(CopcWriter, APipeGetsWhatAFileGets) {
 TEST(CopcWriter, RefusesAPipeThatItCannotGoBackIn) {
   FaultyFileSystem files;
   files.seekable = false;
-  const auto writer =
-      open_point_writer(files, "a.copc.laz", {.count = std::uint64_t{1}, .lattice = Lattice{}});
+  const auto writer = open_point_writer(files, "a.copc.laz",
+                                        {.count = std::uint64_t{1}, .lattice = IntegerLattice{}});
   writer->write(Points(1), {});
   EXPECT_THAT(error_of([&] { writer->finish(); }), HasSubstr("not written in one go"));
 }
 
 TEST(CopcWriter, IsLas14Alone) {
-  EXPECT_THAT(error_of([] { written_copc({}, {.lattice = Lattice{}, .version = "1.2"}); }),
+  EXPECT_THAT(error_of([] { written_copc({}, {.lattice = IntegerLattice{}, .version = "1.2"}); }),
               HasSubstr("COPC is LAS 1.4"));
-  EXPECT_EQ(read_back(written_copc({}, {.lattice = Lattice{}, .version = "1.4"})).header.version,
-            "1.4");
+  EXPECT_EQ(
+      read_back(written_copc({}, {.lattice = IntegerLattice{}, .version = "1.4"})).header.version,
+      "1.4");
 }
 
 TEST(CopcWriter, RefusesLessMemoryThanItNeeds) {
-  EXPECT_THAT(error_of([] { written_copc({}, {.lattice = Lattice{}, .memory = 33'000'000}); }),
-              HasSubstr("COPC takes 32 MiB at least"));
+  EXPECT_THAT(
+      error_of([] { written_copc({}, {.lattice = IntegerLattice{}, .memory = 33'000'000}); }),
+      HasSubstr("COPC takes 32 MiB at least"));
 }
 
 TEST(CopcWriter, RefusesACodeWhoseWktIsNotKnown) {
-  EXPECT_THAT(error_of([] { written_copc({}, {.lattice = Lattice{}, .crs = "EPSG:32633"}); }),
-              HasSubstr("COPC tells coordinate systems as WKT"));
+  EXPECT_THAT(
+      error_of([] { written_copc({}, {.lattice = IntegerLattice{}, .crs = "EPSG:32633"}); }),
+      HasSubstr("COPC tells coordinate systems as WKT"));
   const std::string wkt = "LOCAL_CS[\"mine\"]";
   const std::string file =
-      written_copc({}, {.lattice = Lattice{}, .crs = "EPSG:32633", .crs_wkt = wkt});
+      written_copc({}, {.lattice = IntegerLattice{}, .crs = "EPSG:32633", .crs_wkt = wkt});
   EXPECT_THAT(copc_faults(file), IsEmpty());
   EXPECT_EQ(read_back(file).header.crs, wkt);
 }
@@ -364,7 +369,7 @@ TEST(CopcWriter, KeepsAllThatPointsOfLasHaveButWaveforms) {
     SCOPED_TRACE(from);
     const LasInput input = las_input(from, 2000);
     const PointWriterOptions options{
-        .lattice = Lattice{}, .attributes = input.layout, .las = input.las};
+        .lattice = IntegerLattice{}, .attributes = input.layout, .las = input.las};
     const std::string file = written_copc(input.points, options, input.attributes);
     EXPECT_THAT(copc_faults(file), IsEmpty());
     EXPECT_EQ(read_back(file).header.point_format, to);
@@ -396,7 +401,8 @@ TEST(CopcWriter, KeepsExtraBytesAndRecordsOfTheInput) {
   input.las->records = {{.user = "mine", .id = 7, .content = "before"},
                         {.user = "mine", .id = 8, .content = "behind", .extended = true}};
   const std::string file = written_copc(
-      input.points, {.lattice = Lattice{}, .attributes = layout, .las = input.las}, attributes);
+      input.points, {.lattice = IntegerLattice{}, .attributes = layout, .las = input.las},
+      attributes);
   EXPECT_THAT(copc_faults(file), IsEmpty());
   EXPECT_TRUE(rows_of_file(file, layout) == rows_of(input.points, layout, attributes, layout));
   PointReaderOptions options;
@@ -413,7 +419,7 @@ TEST(CopcWriter, LeavesOutRecordsOfWaveforms) {
       .user = std::string(kLasSpecUser), .id = 65535, .content = "waves", .extended = true};
   input.las->records = {descriptor, waveforms};
   const std::string file = written_copc(
-      input.points, {.lattice = Lattice{}, .attributes = input.layout, .las = input.las},
+      input.points, {.lattice = IntegerLattice{}, .attributes = input.layout, .las = input.las},
       input.attributes);
   EXPECT_EQ(value_at<std::uint16_t>(file, 6) & 6, 0);
   PointReaderOptions options;
@@ -434,8 +440,8 @@ TEST(CopcWriter, ABoxIsReadAsAFilterGivesIt) {
     const double side = double(1U << random() % 12);
     const Box<3> box{{x, y, -1e9}, {x + side, y + side, i % 2 == 0 ? 1e9 : 0}};
     const auto inside = [&](Points some) {
-      std::erase_if(some,
-                    [&](const LatticePoint& p) { return !box.contains(Lattice{}.to_world(p)); });
+      std::erase_if(
+          some, [&](const LatticePoint& p) { return !box.contains(IntegerLattice{}.to_world(p)); });
       return sorted(some);
     };
     const Points got = read_back(file, {.bounds = box}).points;
@@ -464,4 +470,4 @@ TEST(CopcWriter, AResolutionIsReadAsItsLevels) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

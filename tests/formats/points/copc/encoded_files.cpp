@@ -13,7 +13,7 @@
 #include "tests/formats/points/copc/copc_file.h"
 #include "tests/formats/points/copc/point_octree.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using Place = PointOctree::Place;
@@ -54,7 +54,7 @@ std::string bytes_with_extent(const auto& file, const EncodedPoints& points) {
   return bytes;
 }
 
-void set_lattice(LazFile& file, const Lattice& lattice) {
+void set_lattice(LazFile& file, const IntegerLattice& lattice) {
   file.las.scale = lattice.scale;
   file.las.offset = lattice.offset;
 }
@@ -141,4 +141,4 @@ std::string copc_bytes(const EncodedPoints& points) {
   return bytes_with_extent(file, points);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,15 +10,15 @@
 #include "formats/points/las/records/las_flags.h"
 #include "tests/formats/points/copc/point_octree.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 struct EncodedPoints {
-  Lattice lattice;
+  IntegerLattice lattice;
   std::vector<PointOctree::Place> places;
   std::vector<LasFlags> attributes;  ///< as many
 };
 
-/// All points of a file that has some, on a lattice. Throws Error for others.
+/// All points of a file that has some, on a lattice. Throws Failure for others.
 EncodedPoints read_points_to_encode(const std::string& path);
 
 /// A LAZ file of point format 0.
@@ -27,4 +27,4 @@ std::string laz_bytes(const EncodedPoints& points);
 /// A COPC file of point format 6. Throws InvalidArgument if axes have other scales.
 std::string copc_bytes(const EncodedPoints& points);
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::uint64_t kBegin = 1000;
@@ -77,4 +77,4 @@ TEST(HierarchyPages, NoNodesAreAnEmptyRoot) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

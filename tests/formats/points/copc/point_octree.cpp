@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Place = PointOctree::Place;
@@ -128,4 +128,4 @@ PointOctree make_point_octree(std::span<const PointOctree::Place> points) {
   return Division(points).run();
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 
 struct PointOctree {
   /// Coordinates on the lattice.
@@ -31,4 +31,4 @@ struct PointOctree {
 /// some thousand points.
 PointOctree make_point_octree(std::span<const PointOctree::Place> points);
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

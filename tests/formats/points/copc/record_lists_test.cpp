@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kRecord = 7;
@@ -61,4 +61,4 @@ TEST(RecordLists, ARecordLongerThanAPieceIsAPiece) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "formats/points/create_points.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Work shared by so many threads, the last items first.
 inline WorkSharing shared_by(std::size_t threads) {
@@ -30,7 +30,7 @@ inline WorkSharing shared_by(std::size_t threads) {
 /// The COPC file of these points, which come in blocks of all sizes, with records of the
 /// attributes that the options tell.
 inline std::string written_copc(std::span<const LatticePoint> points,
-                                const PointWriterOptions& options = {.lattice = Lattice{}},
+                                const PointWriterOptions& options = {.lattice = IntegerLattice{}},
                                 std::span<const std::byte> attributes = {}) {
   FaultyFileSystem files;
   const std::size_t record = options.attributes.record_size();
@@ -47,4 +47,4 @@ inline std::string written_copc(std::span<const LatticePoint> points,
   return files.files.at("a.copc.laz");
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

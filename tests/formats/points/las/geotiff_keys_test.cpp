@@ -13,7 +13,7 @@
 
 #include "tests/formats/with_gdal.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -228,4 +228,4 @@ TEST(GeotiffKeys, KindsOfCodesThatAreNotAskedForAreThoseOfGdal) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -3,7 +3,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -167,4 +167,4 @@ TEST(LasCorruption, MessagesBeginWithTheFile) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

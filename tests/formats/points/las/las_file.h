@@ -9,7 +9,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// A LAS file made field by field from the specification, independently of the writer. The offsets
 /// are spelled out here again on purpose.
@@ -105,4 +105,4 @@ struct LasFile {
   }
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

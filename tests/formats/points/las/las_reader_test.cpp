@@ -9,7 +9,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -55,7 +55,7 @@ TEST_P(LasFormats, TellsWhatTheHeaderSays) {
   EXPECT_EQ(header.point_format, file_.point_format);
   EXPECT_EQ(header.coordinates, 3);
   EXPECT_EQ(header.count, 3U);
-  EXPECT_EQ(header.lattice, (Lattice{file_.scale, file_.offset}));
+  EXPECT_EQ(header.lattice, (IntegerLattice{file_.scale, file_.offset}));
   EXPECT_EQ(header.extent, (Box<3>{{10, 30, 50}, {20, 40, 60}}));
   EXPECT_EQ(header.software, "by hand");
 }
@@ -363,4 +363,4 @@ TEST(LasCoordinateSystem, TruncatedGeotiffKeys) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -5,7 +5,7 @@
 
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -116,4 +116,4 @@ TEST(LasSalvage, AHeaderThatIsNotWholeStaysAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 #include "tests/test_paths.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -521,4 +521,4 @@ INSTANTIATE_TEST_SUITE_P(Files, SharedLazDamage,
                          });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

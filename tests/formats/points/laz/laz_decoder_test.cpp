@@ -18,7 +18,7 @@
 #include "formats/points/laz/coding/streaming_median.h"
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using laz::ArithmeticDecoder;
@@ -183,19 +183,19 @@ TEST(LazArithmeticDecoder, DecodesAReferenceStreamFromSpansOfAnySize) {
 }
 
 TEST(LazArithmeticDecoder, RefusesWhatNoEncoderWrites) {
-  EXPECT_THROW(ArithmeticDecoder(bytes_of("FFFFFFFF0000")), Error);
-  EXPECT_THROW(ArithmeticDecoder(bytes_of("000000")), Error);
+  EXPECT_THROW(ArithmeticDecoder(bytes_of("FFFFFFFF0000")), Failure);
+  EXPECT_THROW(ArithmeticDecoder(bytes_of("000000")), Failure);
   // Just below the length, so that the number is 2^19 or more: shifting has cut the length.
   const Bytes stream = bytes_of("FFFFFFFE00000000");
   ArithmeticDecoder decoder(stream);
-  EXPECT_THROW(decoder.raw(19), Error);
+  EXPECT_THROW(decoder.raw(19), Failure);
 }
 
 TEST(LazArithmeticDecoder, NeverReadsBehindTheEnd) {
   const Bytes stream = bytes_of("0102030405");
   ArithmeticDecoder decoder(stream);
   decoder.raw(8);
-  EXPECT_THROW(decoder.raw(8), Error);
+  EXPECT_THROW(decoder.raw(8), Failure);
 }
 
 struct IntegerCase {
@@ -411,7 +411,7 @@ TEST(LazChunk, TellsHowManyBytesLieBehindIt) {
   }
 }
 
-/// Decodes `chunk`, whatever it is: points or an Error. The message is returned.
+/// Decodes `chunk`, whatever it is: points or an Failure. The message is returned.
 std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, std::size_t count) {
   SplitBytes split(chunk, 16);
   std::vector<LatticePoint> points(count);
@@ -420,7 +420,7 @@ std::string outcome(LazChunkDecoder& decoder, std::span<const std::byte> chunk, 
     decoder.begin(split, count);
     decode_chunk(decoder, points, attributes);
     decoder.end();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return {};
@@ -498,4 +498,4 @@ TEST(LazChunk, RandomBytesGivePointsOrAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

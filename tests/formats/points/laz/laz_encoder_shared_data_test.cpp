@@ -17,7 +17,7 @@
 
 // The chunks of real files, decoded to whole records and encoded again.
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 class ReencodedLaz : public ::testing::TestWithParam<std::string> {};
@@ -56,4 +56,4 @@ INSTANTIATE_TEST_SUITE_P(Files, ReencodedLaz,
                          });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

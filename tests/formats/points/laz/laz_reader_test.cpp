@@ -6,7 +6,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -351,4 +351,4 @@ TEST(LasVersions, TheyArePartOfThePointsWhereThereIsNoRoomForThem) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

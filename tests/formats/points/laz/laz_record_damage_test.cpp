@@ -26,7 +26,7 @@
 
 // Damaged chunks where whole records are wanted: an Error or records, whatever the damage.
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Combine;
@@ -53,11 +53,11 @@ class Trial {
   explicit Trial(const LazChunkFormat& format)
       : length_(record_length_of(format)), decoder_(format, LazDetail::kRecords) {}
 
-  /// The records, or nothing if there was an Error.
+  /// The records, or nothing if there was an Failure.
   std::optional<std::string> records(const std::string& chunk, std::size_t count = kRecords) {
     try {
       return decode_laz_records(decoder_, length_, as_bytes_of(chunk), count);
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       message_ = error.what();
       return std::nullopt;
     }
@@ -207,4 +207,4 @@ INSTANTIATE_TEST_SUITE_P(Files, SharedLazRecordDamage,
                          });
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -16,7 +16,7 @@
 
 // Whole records, with all their attributes, through the encoders of chunks and back.
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Combine;
@@ -106,7 +106,8 @@ TEST_P(LazRecords, ComeBackAfterAChunkWithErrors) {
   const std::string chunk = encode_laz_chunk(format.items, some);
   const std::size_t length = record_length_of(format);
   EXPECT_THROW(
-      decode_laz_records(decoder, length, as_bytes_of(chunk).first(chunk.size() - 20), 200), Error);
+      decode_laz_records(decoder, length, as_bytes_of(chunk).first(chunk.size() - 20), 200),
+      Failure);
   EXPECT_EQ(decode_laz_records(decoder, length, as_bytes_of(chunk), 200), joined(some));
 }
 
@@ -177,9 +178,9 @@ TEST_P(WrittenLazRecords, AreTheSameBytesFromParts) {
 TEST(LazChunkEncoderVersions, AreThoseThatItWrites) {
   for (const int version : {1, 3}) {
     const LazChunkFormat format{.items = laz_items(0, 0, version), .layered = false};
-    EXPECT_THROW(LazChunkEncoder{format}, Error) << version;
+    EXPECT_THROW(LazChunkEncoder{format}, Failure) << version;
   }
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 constexpr std::size_t kPoints = 300;
@@ -18,7 +18,7 @@ void expect_records(const std::string& file, bool seekable, int point_format,
   PointBlock got;
   try {
     got = read_laz(file, seekable);
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     FAIL() << error.what();
   }
   ASSERT_EQ(got.points.size(), records.size());
@@ -88,7 +88,7 @@ class LazRoundTrip : public ::testing::TestWithParam<Coding> {
                      << "table " << static_cast<int>(place) << (seekable ? ", file" : ", pipe")
                      << ", chunk size " << file.chunk_size);
         if (needs_table && (place == LazFile::Table::kMissing || !seekable)) {
-          EXPECT_THROW(read_laz(bytes, seekable), Error);
+          EXPECT_THROW(read_laz(bytes, seekable), Failure);
         } else {
           expect_records(bytes, seekable, GetParam().point_format, records);
         }
@@ -300,4 +300,4 @@ TEST(LazRoundTripOthers, RecognisedByItsFirstBytes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

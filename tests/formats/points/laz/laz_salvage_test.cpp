@@ -10,7 +10,7 @@
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::Contains;
@@ -260,4 +260,4 @@ TEST(LazSalvage, RandomDamageNeverEndsTheReading) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -2,7 +2,7 @@
 
 #include "tests/formats/shared_data.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(SharedLazAttributes, AreThoseOfTheUncompressedFile) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -28,9 +28,9 @@
 
 namespace {
 
-using spillway::detail::PointBlock;
-using spillway::detail::testing::DamageOutcome;
-using spillway::detail::testing::LazCarried;
+using spillway::formats::PointBlock;
+using spillway::test::DamageOutcome;
+using spillway::test::LazCarried;
 
 struct Settings {
   std::vector<std::string> files;
@@ -88,7 +88,7 @@ void sweep(const Settings& settings, const Target& target, const Damage& damage,
       std::string damaged = target.bytes;
       damage(damaged, place);
       try {
-        const DamageOutcome outcome = spillway::detail::testing::read_damaged_laz(
+        const DamageOutcome outcome = spillway::test::read_damaged_laz(
             damaged, !settings.pipe, target.sound, settings.carried());
         if (settings.list && outcome == DamageOutcome::kOther) report(place, "other points");
         ++(outcome == DamageOutcome::kError   ? counts.errors
@@ -111,7 +111,7 @@ class Sweep {
       : settings_(settings),
         name_(std::filesystem::path(name).filename().string()),
         bytes_(content_of(name)),
-        sound_(spillway::detail::testing::read_laz(bytes_, !settings.pipe, settings.carried())),
+        sound_(spillway::test::read_laz(bytes_, !settings.pipe, settings.carried())),
         excerpts_(bytes_) {}
 
   /// Damages every `step`-th byte, in the file of its chunk if `in_chunks`; returns how many runs
@@ -129,7 +129,7 @@ class Sweep {
       }
     };
     for (std::size_t i = 0; i < chunks; ++i) {
-      const spillway::detail::LazChunk& chunk = excerpts_.chunk(i);
+      const spillway::formats::LazChunk& chunk = excerpts_.chunk(i);
       take_places(chunk.offset, whole);
       Target part{excerpts_.file(i),
                   excerpts_.points(sound_, i),
@@ -161,7 +161,7 @@ class Sweep {
   std::string name_;
   std::string bytes_;
   PointBlock sound_;
-  spillway::detail::testing::LazExcerpts excerpts_;
+  spillway::test::LazExcerpts excerpts_;
 };
 
 /// Sweeps one file; returns how many runs failed.

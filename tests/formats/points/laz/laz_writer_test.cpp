@@ -19,7 +19,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/random_attributes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -40,7 +40,7 @@ std::vector<LatticePoint> scan_lines(std::size_t count) {
 
 PointWriterOptions options_of(const std::string& version) {
   PointWriterOptions options;
-  options.lattice = Lattice{};
+  options.lattice = IntegerLattice{};
   options.version = version;
   return options;
 }
@@ -196,7 +196,9 @@ TEST(LazWriterRecord, OfEveryPointFormatIsWhatTheReaderTakes) {
 TEST(LazWriterFaults, AnErrorOfAWorkerLeavesNothingBehind) {
   FaultyFileSystem files;
   PointWriterOptions options = options_of("1.2");
-  options.sharing.run = [](std::size_t, const WorkSharing::Body&) { throw Error("a worker fell"); };
+  options.sharing.run = [](std::size_t, const WorkSharing::Body&) {
+    throw Failure("a worker fell");
+  };
   EXPECT_EQ(error_of([&] {
               const auto writer = open_point_writer(files, "a.laz", options);
               writer->write(scan_lines(kChunk), {});
@@ -216,4 +218,4 @@ TEST(LazWriterFaults, RefusesWhatIsNoInt32) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "tests/formats/points/all_attributes.h"
 #include "tests/formats/points/npy/npy_bytes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -218,4 +218,4 @@ TEST(NpyAttributes, WhoseNamesDoNotFitTheHeaderAreAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -9,7 +9,7 @@
 
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// An npy file with this dictionary and these values.
 template <typename T>
@@ -40,4 +40,4 @@ T of_other_order(T value) {
   return value;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 #include "tests/formats/point_test_helpers.h"
 #include "tests/formats/points/npy/npy_bytes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -244,4 +244,4 @@ TEST(NpyCorruption, IntegerBeyondDoubles) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "formats/points/create_points.h"
 #include "tests/formats/points/all_attributes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -169,7 +169,7 @@ TEST(PlyPoints, CutAmongOtherElementsAreAnErrorOrComplete) {
       for (std::size_t size = 4; size < whole.size(); ++size) {
         try {
           EXPECT_EQ(read_carried("a.ply", whole.substr(0, size)).points.size(), 3U);
-        } catch (const Error&) {
+        } catch (const Failure&) {
           continue;
         }
       }
@@ -289,4 +289,4 @@ TEST(PlyPointErrors, IntegersThatAreNoDoublesAreNotWritten) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

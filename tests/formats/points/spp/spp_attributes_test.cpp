@@ -14,7 +14,7 @@
 #include "formats/points/spp/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -140,4 +140,4 @@ TEST(SppAttributes, ThatTheirTypeDoesNotHoldAreAnError) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -16,14 +16,14 @@
 #include "formats/points/spp/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr Lattice kCentimetres{{0.01, -0.01, 0.5}, {500000, 4000000, -10}};
+constexpr IntegerLattice kCentimetres{{0.01, -0.01, 0.5}, {500000, 4000000, -10}};
 
 using Cells = std::vector<std::vector<LatticePoint>>;
 
@@ -394,4 +394,4 @@ TEST(SortedSpp, BlocksOfTheOtherKindOfStream) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

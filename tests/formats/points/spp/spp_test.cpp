@@ -13,13 +13,13 @@
 #include "formats/points/spp/spp_format.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr Lattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
+constexpr IntegerLattice kCentimetres{{0.01, 0.01, 0.01}, {500000, 4000000, -10}};
 
 /// The points as a stream, written in pieces of `piece`.
 std::string stream_of(const std::vector<LatticePoint>& points,
@@ -269,4 +269,4 @@ TEST(Spp, ADescriptionThatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "formats/points/text/text_columns.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -346,4 +346,4 @@ TEST(TextSeparators, HoldFromFrontToBackOfPipes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

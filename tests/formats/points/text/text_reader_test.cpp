@@ -3,7 +3,7 @@
 #include "formats/inputs/open_points.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -190,4 +190,4 @@ TEST(TextCorruption, LongLinesAreShortenedInMessages) {
 TEST(TextCorruption, UnreadableTail) { EXPECT_THAT(text_error("1 2 3\n4 5"), HasSubstr("line 2")); }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

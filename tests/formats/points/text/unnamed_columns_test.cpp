@@ -13,7 +13,7 @@
 #include "src/error.h"
 #include "tests/formats/point_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::AllOf;
@@ -43,7 +43,7 @@ TEST(UnnamedColumns, AFirstOneThatCountsIsRefused) {
   try {
     read_content("a.csv", kSurvey);
     FAIL() << "no error";
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_EQ(error.facts().remedy, Remedy::kColumns);
   }
 }
@@ -133,4 +133,4 @@ TEST(Heights, HaveNamesInManyLanguages) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -13,7 +13,7 @@
 #include "tests/formats/inputs/temporary_files.h"
 #include "tests/stream/library/full_pipe.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ TEST(ContextState, ScratchFilesKeepToTheLimitOfTheirOwnContext) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

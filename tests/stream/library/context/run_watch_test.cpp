@@ -15,7 +15,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -197,4 +197,4 @@ TEST(RunWatch, OfAProgramThatIsToldNothingIsStoppedAllTheSame) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,7 +14,7 @@
 #include "src/geometry/simplex_name.h"
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -53,8 +53,8 @@ class Recorder final : public OwnSink<spillway::MeshSink> {
 
   struct Blocks final : BlockSink {
     explicit Blocks(std::vector<std::string>& told) : calls(told) {}
-    void absorb(MeshBlock& /*block*/) override { calls.emplace_back("absorb"); }
-    void write(MeshBlock&& /*block*/) override { calls.emplace_back("write"); }
+    void absorb(MeshStreamBlock& /*block*/) override { calls.emplace_back("absorb"); }
+    void write(MeshStreamBlock&& /*block*/) override { calls.emplace_back("write"); }
     void finish(const MeshTotals& /*totals*/) override { calls.emplace_back("blocks end"); }
     std::vector<std::string>& calls;
   };
@@ -63,7 +63,7 @@ class Recorder final : public OwnSink<spillway::MeshSink> {
   Blocks blocks_{calls};
 };
 
-const spillway::MeshBlock kTriangle{
+const MeshBlock kTriangle{
     .vertices = {{0, 0, 0}, {4, 0, 0}, {0, 3, 0}}, .corners = {0, 1, 2}, .finalized = {0, 1, 2}};
 
 TEST(OwnSink, GoesThroughTheStepsOfAnEnginesSinkForAProgram) {
@@ -119,7 +119,7 @@ TEST(OwnSink, DoesNotGetABlockThatCannotBe) {
   Recorder sink{Context()};
   spillway::MeshSink& door = sink;
   door.begin({});
-  spillway::MeshBlock block = kTriangle;
+  MeshBlock block = kTriangle;
   block.corners[2] = 3;
   EXPECT_TRUE(thrown_by([&] { door.write(block); }));
   EXPECT_THAT(sink.calls, ElementsAre("open triangles"));
@@ -158,4 +158,4 @@ TEST(Terrain, IsOfTrianglesWithHeights) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

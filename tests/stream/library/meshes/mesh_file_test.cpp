@@ -9,7 +9,7 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::optional<ErrorCode> code_of(const std::function<void()>& work) {
@@ -51,4 +51,4 @@ TEST(MeshFile, InPartsIsForSeveralRanks) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

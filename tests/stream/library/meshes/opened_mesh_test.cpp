@@ -16,7 +16,7 @@
 #include "tests/formats/meshes/stream_test_helpers.h"
 #include "tests/stream/library/full_pipe.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -50,7 +50,7 @@ class OpenedMeshTest : public ::testing::Test {
   /// The box of the mesh in x and y, as its blocks give it.
   [[nodiscard]] Box<2> box() const {
     Box<2> box;
-    for (const MeshBlock& block : mesh_.blocks) {
+    for (const MeshStreamBlock& block : mesh_.blocks) {
       for (const LatticePoint& vertex : block.vertices) {
         box.expand(Point<2>{vertex[0], vertex[1]});
       }
@@ -61,7 +61,7 @@ class OpenedMeshTest : public ::testing::Test {
   void expect_all_blocks(OpenedMesh& mesh) {
     MeshStreamReader& reader = mesh.reader(watch_, false);
     std::uint64_t vertices = 0;
-    for (MeshBlock block; reader.read(block);) vertices += block.vertices.size();
+    for (MeshStreamBlock block; reader.read(block);) vertices += block.vertices.size();
     EXPECT_EQ(vertices, mesh_.totals.vertices);
     EXPECT_EQ(reader.totals().simplices, mesh_.totals.simplices);
   }
@@ -162,8 +162,8 @@ TEST_F(OpenedMeshTest, AProgramReadsTheSameBlocksFromAFileAndFromAPipe) {
   OpenedMesh from_pipe(pipe.path(), {}, context_);
   OpenedMesh from_file(write("a.spm"), {}, context_);
   EXPECT_EQ(from_pipe.header().extent, from_file.header().extent);
-  spillway::MeshBlock block;
-  spillway::MeshBlock same;
+  MeshBlock block;
+  MeshBlock same;
   std::uint64_t vertices = 0;
   while (from_pipe.read(block)) {
     ASSERT_TRUE(from_file.read(same));
@@ -183,7 +183,7 @@ TEST_F(OpenedMeshTest, IsTakenOnceByARunOrByTheProgram) {
   OpenedMesh by_run(write("a.spm"), {}, context_);
   by_run.take();
   EXPECT_EQ(thrown_by([&] { by_run.take(); }).value().code(), ErrorCode::kInvalidArgument);
-  spillway::MeshBlock block;
+  MeshBlock block;
   EXPECT_EQ(thrown_by([&] { by_run.read(block); }).value().code(), ErrorCode::kInvalidArgument);
   OpenedMesh by_program(write("a.spm"), {}, context_);
   EXPECT_TRUE(by_program.read(block));
@@ -192,4 +192,4 @@ TEST_F(OpenedMeshTest, IsTakenOnceByARunOrByTheProgram) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

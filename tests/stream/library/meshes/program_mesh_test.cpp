@@ -9,21 +9,21 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Two triangles of a square in two blocks.
 class Square final : public spillway::MeshSource {
  public:
-  [[nodiscard]] spillway::MeshHeader header() const override { return {}; }
-  bool read(spillway::MeshBlock& block) override {
+  [[nodiscard]] MeshHeader header() const override { return {}; }
+  bool read(MeshBlock& block) override {
     if (next_ == blocks.size()) return false;
     block = blocks[next_++];
     return true;
   }
   [[nodiscard]] MeshTotals totals() override { return told; }
 
-  std::vector<spillway::MeshBlock> blocks = {
+  std::vector<MeshBlock> blocks = {
       {.first_vertex = 0,
        .vertices = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}},
        .corners = {0, 1, 2},
@@ -38,7 +38,7 @@ class Square final : public spillway::MeshSource {
 /// Reads all blocks; returns how many.
 int read_all(ProgramMesh& mesh) {
   int blocks = 0;
-  for (MeshBlock block; mesh.read(block);) ++blocks;
+  for (MeshStreamBlock block; mesh.read(block);) ++blocks;
   return blocks;
 }
 
@@ -80,7 +80,7 @@ TEST(ProgramMesh, RefusesBlocksThatCannotBe) {
   Square square;
   square.blocks[1].corners[0] = 0;
   ProgramMesh mesh(square);
-  MeshBlock block;
+  MeshStreamBlock block;
   EXPECT_TRUE(mesh.read(block));
   const auto error = thrown_by([&] { mesh.read(block); });
   ASSERT_TRUE(error);
@@ -88,4 +88,4 @@ TEST(ProgramMesh, RefusesBlocksThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

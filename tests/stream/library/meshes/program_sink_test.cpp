@@ -13,7 +13,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -21,12 +21,12 @@ using ::testing::ElementsAre;
 /// Keeps what it is given, block by block.
 class Kept final : public spillway::MeshSink {
  public:
-  void begin(const spillway::MeshHeader& header) override { headers.push_back(header); }
-  void write(const spillway::MeshBlock& block) override { blocks.push_back(block); }
+  void begin(const MeshHeader& header) override { headers.push_back(header); }
+  void write(const MeshBlock& block) override { blocks.push_back(block); }
   void finish(const MeshTotals& totals) override { ends.push_back(totals); }
 
-  std::vector<spillway::MeshHeader> headers;
-  std::vector<spillway::MeshBlock> blocks;
+  std::vector<MeshHeader> headers;
+  std::vector<MeshBlock> blocks;
   std::vector<MeshTotals> ends;
 };
 
@@ -39,15 +39,15 @@ TEST(ProgramSink, GivesBlocksInOutputCoordinatesWhoseNumbersFollowEachOther) {
   ASSERT_EQ(kept.headers.size(), 1U);
   EXPECT_EQ(kept.headers[0].dimension, 3);
   EXPECT_EQ(kept.headers[0].crs, "EPSG:25832");
-  std::vector<MeshBlock> engines = mesh.blocks;
-  for (MeshBlock& block : engines) {
+  std::vector<MeshStreamBlock> engines = mesh.blocks;
+  for (MeshStreamBlock& block : engines) {
     blocks.absorb(block);
     blocks.write(std::move(block));
   }
   std::uint64_t first = 0;
   std::uint64_t simplices = 0;
   for (std::size_t b = 0; b < kept.blocks.size(); ++b) {
-    const spillway::MeshBlock& block = kept.blocks[b];
+    const MeshBlock& block = kept.blocks[b];
     EXPECT_EQ(block.first_vertex, first);
     for (std::size_t v = 0; v < block.vertices.size(); ++v) {
       EXPECT_EQ(block.vertices[v],
@@ -106,4 +106,4 @@ TEST(ProgramSink, TakesOneMesh) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

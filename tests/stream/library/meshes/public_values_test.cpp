@@ -17,7 +17,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/stream_test_helpers.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(PublicHeader, SaysWhatAStreamSaysAndBackAgain) {
-  spillway::MeshHeader header;
+  MeshHeader header;
   header.dimension = 3;
   header.has_input_index = true;
   header.points = 12;
@@ -34,14 +34,14 @@ TEST(PublicHeader, SaysWhatAStreamSaysAndBackAgain) {
   header.crs = "EPSG:25832";
   const MeshStreamHeader stream = stream_header(header);
   EXPECT_FALSE(stream.lattice) << "coordinates of programs are output coordinates";
-  const spillway::MeshHeader back = public_header(stream);
+  const MeshHeader back = public_header(stream);
   EXPECT_EQ(back.dimension, 3);
   EXPECT_TRUE(back.has_input_index);
   EXPECT_EQ(back.points, 12U);
   EXPECT_EQ(back.extent, header.extent);
   EXPECT_EQ(back.crs, "EPSG:25832");
 
-  const spillway::MeshHeader unknown = public_header(stream_header({}));
+  const MeshHeader unknown = public_header(stream_header({}));
   EXPECT_FALSE(unknown.points);
   EXPECT_FALSE(unknown.extent);
 }
@@ -53,7 +53,7 @@ TEST(PublicHeader, OfNoPointsHasNoExtent) {
 }
 
 /// The numbers of a block's vertices in the whole mesh, by short number.
-std::vector<std::uint64_t> in_stream(const MeshBlock& block, std::uint64_t first,
+std::vector<std::uint64_t> in_stream(const MeshStreamBlock& block, std::uint64_t first,
                                      const std::vector<std::uint32_t>& vertices) {
   const StreamNumbers numbers(first, block);
   std::vector<std::uint64_t> all;
@@ -68,8 +68,8 @@ class PublicBlocks : public ::testing::TestWithParam<int> {
 
 TEST_P(PublicBlocks, AreInOutputCoordinatesAndStreamNumbers) {
   std::uint64_t first = 0;
-  for (const MeshBlock& block : mesh_.blocks) {
-    const spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first);
+  for (const MeshStreamBlock& block : mesh_.blocks) {
+    const MeshBlock told = public_block(mesh_.header, MeshStreamBlock(block), first);
     EXPECT_EQ(told.first_vertex, first);
     EXPECT_EQ(told.corners, in_stream(block, first, block.corners));
     EXPECT_EQ(told.finalized, in_stream(block, first, block.finalized));
@@ -87,11 +87,11 @@ TEST_P(PublicBlocks, OfAProgramAreTheSameMeshAsAStream) {
   ImportCheck imports;
   std::uint64_t first = 0;
   std::uint64_t simplices = 0;
-  for (const MeshBlock& block : mesh_.blocks) {
+  for (const MeshStreamBlock& block : mesh_.blocks) {
     EXPECT_EQ(program.vertices(), first);
     EXPECT_EQ(program.simplices(), simplices);
-    spillway::MeshBlock told = public_block(mesh_.header, MeshBlock(block), first);
-    const MeshBlock stream = program.next(told);
+    MeshBlock told = public_block(mesh_.header, MeshStreamBlock(block), first);
+    const MeshStreamBlock stream = program.next(told);
     EXPECT_EQ(in_stream(stream, first, stream.corners), told.corners);
     EXPECT_EQ(in_stream(stream, first, stream.finalized), told.finalized);
     for (const std::uint64_t vertex : stream.imported) {
@@ -115,13 +115,13 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, PublicBlocks, ::testing::Values(2, 3));
 TEST(PublicBlock, CarriesTheInputIndexOfItsVertices) {
   MeshStreamHeader header;
   header.has_input_index = true;
-  MeshBlock block;
+  MeshStreamBlock block;
   block.vertices = {{0, 0, 0}, {1, 0, 0}};
   block.input_index = {8, 3};
-  const spillway::MeshBlock told = public_block(header, std::move(block), 5);
+  const MeshBlock told = public_block(header, std::move(block), 5);
   EXPECT_THAT(told.input_index, ElementsAre(8, 3));
   ProgramBlocks program(public_header(header));
-  spillway::MeshBlock first = told;
+  MeshBlock first = told;
   first.first_vertex = 0;
   EXPECT_THAT(program.next(first).input_index, ElementsAre(8, 3));
 }
@@ -129,9 +129,9 @@ TEST(PublicBlock, CarriesTheInputIndexOfItsVertices) {
 TEST(PublicBlock, CarriesWhatItsVerticesDo) {
   const Attribute depth{.name = "depth", .type = NumberType::kInt16, .scale = 0.1};
   const Attribute kind{.name = "kind", .type = NumberType::kUint8, .elements = 2};
-  spillway::MeshHeader header{.attributes = {depth, kind}};
-  spillway::MeshBlock block{.vertices = {{0, 0, 0}, {1, 0, 0}},
-                            .attributes = AttributeColumns({depth, kind}, 2)};
+  MeshHeader header{.attributes = {depth, kind}};
+  MeshBlock block{.vertices = {{0, 0, 0}, {1, 0, 0}},
+                  .attributes = AttributeColumns({depth, kind}, 2)};
   block.attributes.values<std::int16_t>("depth")[1] = -7;
   block.attributes.values<std::uint8_t>("kind")[2] = 9;
   for (const std::vector<Attribute>& kept : {header.attributes, {kind}}) {
@@ -139,9 +139,9 @@ TEST(PublicBlock, CarriesWhatItsVerticesDo) {
     EXPECT_EQ(program.header().attributes.attributes(), header.attributes);
     program.keep(AttributeLayout(kept));
     EXPECT_EQ(public_header(program.header()).attributes, kept);
-    MeshBlock own = program.next(block);
+    MeshStreamBlock own = program.next(block);
     EXPECT_EQ(own.attributes.size(), 2 * program.header().attributes.record_size());
-    const spillway::MeshBlock told = public_block(program.header(), std::move(own), 0);
+    const MeshBlock told = public_block(program.header(), std::move(own), 0);
     EXPECT_EQ(told.attributes.attributes(), kept);
     EXPECT_THAT(told.attributes.values<std::uint8_t>("kind"), ElementsAre(0, 0, 9, 0));
   }
@@ -149,17 +149,17 @@ TEST(PublicBlock, CarriesWhatItsVerticesDo) {
 
 /// A square in two blocks, of which the second is spoiled.
 struct Square {
-  spillway::MeshHeader header{.extent = Extent{{0, 0, 0}, {1, 1, 9}}};
-  spillway::MeshBlock first{.first_vertex = 0,
-                            .vertices = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}},
-                            .corners = {0, 1, 2},
-                            .finalized = {0}};
-  spillway::MeshBlock second{
+  MeshHeader header{.extent = Extent{{0, 0, 0}, {1, 1, 9}}};
+  MeshBlock first{.first_vertex = 0,
+                  .vertices = {{0, 0, 1}, {1, 0, 2}, {0, 1, 3}},
+                  .corners = {0, 1, 2},
+                  .finalized = {0}};
+  MeshBlock second{
       .first_vertex = 3, .vertices = {{1, 1, 4}}, .corners = {1, 3, 2}, .finalized = {1, 2, 3}};
 };
 
 /// The error of a square that `spoil` has changed, after its first block.
-std::optional<spillway::Error> error_of(const std::function<void(Square&)>& spoil) {
+std::optional<Error> error_of(const std::function<void(Square&)>& spoil) {
   Square square;
   ProgramBlocks program(square.header);
   static_cast<void>(program.next(square.first));
@@ -200,7 +200,7 @@ TEST(ProgramBlocks, RefuseVerticesThatHaveNotComeOrComeNoMore) {
 TEST(ProgramBlocks, RefuseAVertexThatTheBlockFinalizedInWhichItCame) {
   ProgramBlocks program({});
   static_cast<void>(program.next({.vertices = {{0, 0, 0}, {1, 0, 0}}, .finalized = {1}}));
-  const spillway::MeshBlock later{.first_vertex = 2, .vertices = {{0, 1, 0}}, .corners = {0, 1, 2}};
+  const MeshBlock later{.first_vertex = 2, .vertices = {{0, 1, 0}}, .corners = {0, 1, 2}};
   EXPECT_TRUE(thrown_by([&] { static_cast<void>(program.next(later)); }));
 }
 
@@ -223,26 +223,26 @@ TEST(ProgramBlocks, RefuseSimplicesOfAnotherDimension) {
 }
 
 TEST(ProgramBlocks, RefuseIndicesThatAreNotOneAVertex) {
-  spillway::MeshHeader header;
+  MeshHeader header;
   header.has_input_index = true;
   ProgramBlocks program(header);
-  const spillway::MeshBlock without{.vertices = {{0, 0, 0}}};
+  const MeshBlock without{.vertices = {{0, 0, 0}}};
   EXPECT_TRUE(thrown_by([&] { static_cast<void>(program.next(without)); }));
-  const spillway::MeshBlock with{.vertices = {{0, 0, 0}}, .input_index = {7}};
+  const MeshBlock with{.vertices = {{0, 0, 0}}, .input_index = {7}};
   EXPECT_FALSE(thrown_by([&] { static_cast<void>(program.next(with)); }));
 }
 
 TEST(ProgramBlocks, RefuseAHeaderThatCannotBe) {
-  const auto error_of_header = [](const std::function<void(spillway::MeshHeader&)>& spoil) {
-    spillway::MeshHeader header{.extent = Extent{{0, 0, 0}, {1, 1, 1}}};
+  const auto error_of_header = [](const std::function<void(MeshHeader&)>& spoil) {
+    MeshHeader header{.extent = Extent{{0, 0, 0}, {1, 1, 1}}};
     spoil(header);
     return thrown_by([&] { const ProgramBlocks program(header); });
   };
-  EXPECT_FALSE(error_of_header([](spillway::MeshHeader&) {}));
+  EXPECT_FALSE(error_of_header([](MeshHeader&) {}));
   EXPECT_FALSE(error_of_header([](auto& header) {
     header.extent->high = {0, 0, 0};
   })) << "a box may be a point";
-  const std::vector<std::function<void(spillway::MeshHeader&)>> wrong = {
+  const std::vector<std::function<void(MeshHeader&)>> wrong = {
       [](auto& header) { header.dimension = 1; },
       [](auto& header) { header.dimension = 4; },
       [](auto& header) { header.extent->low[0] = -kInfinity; },
@@ -257,4 +257,4 @@ TEST(ProgramBlocks, RefuseAHeaderThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(WholeMesh, CountsFacetsThatOneSimplexHasAlone) {
@@ -30,7 +30,7 @@ TEST(WholeMesh, GivesWhatItsVerticesCarry) {
   const std::vector<std::byte> expected = mesh.attributes;
   WholeMesh stream(std::move(mesh), "a", false);
   EXPECT_NE(stream.header().attributes.find("height"), nullptr);
-  MeshBlock block;
+  MeshStreamBlock block;
   ASSERT_TRUE(stream.read(block));
   EXPECT_EQ(block.attributes, expected);
   EXPECT_FALSE(stream.read(block));
@@ -46,7 +46,7 @@ TEST(WholeMesh, ComesInSeveralBlocksWhereOneWouldBeTooLarge) {
   mesh.corners = {0, 20'000, 39'999};
   mesh.attributes.resize(kVertices * mesh.header.attributes.record_size());
   WholeMesh stream(std::move(mesh), "a", false);
-  MeshBlock block;
+  MeshStreamBlock block;
   std::size_t vertices = 0;
   std::size_t blocks = 0;
   for (; stream.read(block); ++blocks) vertices += block.vertices.size();
@@ -56,4 +56,4 @@ TEST(WholeMesh, ComesInSeveralBlocksWhereOneWouldBeTooLarge) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

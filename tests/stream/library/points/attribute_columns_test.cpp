@@ -15,7 +15,7 @@
 namespace spillway {
 namespace {
 
-using detail::thrown_by;
+using test::thrown_by;
 
 using ::testing::Each;
 using ::testing::ElementsAre;

@@ -13,7 +13,7 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -100,4 +100,4 @@ TEST(AttributeRecords, AreChosenByTheNamesThatOtherProgramsHave) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

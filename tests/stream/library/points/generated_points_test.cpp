@@ -12,7 +12,7 @@
 #include "stream/library/points/public_points.h"
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -38,7 +38,7 @@ Taken taken_from(PointStream& stream) {
   return taken;
 }
 
-std::vector<Point<3>> all_of(spillway::PointSource& source) {
+std::vector<Point<3>> all_of(PointSource& source) {
   std::vector<Point<3>> all;
   for (std::vector<Point<3>> some; source.read(some);) {
     all.insert(all.end(), some.begin(), some.end());
@@ -116,4 +116,4 @@ TEST(GeneratedPoints, RefuseOptionsThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

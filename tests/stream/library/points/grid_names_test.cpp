@@ -10,7 +10,7 @@
 #include "tests/error_facts.h"
 #include "tests/formats/inputs/temporary_files.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -50,4 +50,4 @@ TEST(GridNames, RefuseFilesThatWouldBeTakenForTheirs) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

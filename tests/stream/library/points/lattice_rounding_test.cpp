@@ -13,7 +13,7 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -23,20 +23,21 @@ const Box<3> kUtm{{430'000, 5'700'000, 40}, {431'000, 5'701'000, 90}};
 const Box<3> kDegrees{{13.0, 52.3, 30}, {13.8, 52.7, 120}};
 
 TEST(ChosenLattice, IsTheChoiceWhereThereIsOne) {
-  const Lattice source{{0.25, 0.5, 1}, {7, 8, 9}};
-  const Lattice one = chosen_lattice({{0.01}, {100}}, source, kUtm);
+  const IntegerLattice source{{0.25, 0.5, 1}, {7, 8, 9}};
+  const IntegerLattice one = chosen_lattice({{0.01}, {100}}, source, kUtm);
   EXPECT_THAT(one.scale, ElementsAre(0.01, 0.01, 0.01));
   EXPECT_THAT(one.offset, ElementsAre(100, 100, 100));
-  const Lattice three = chosen_lattice({{0.1, 0.2, 0.3}, {1, 2, 3}}, source, kUtm);
+  const IntegerLattice three = chosen_lattice({{0.1, 0.2, 0.3}, {1, 2, 3}}, source, kUtm);
   EXPECT_THAT(three.scale, ElementsAre(0.1, 0.2, 0.3));
   EXPECT_THAT(three.offset, ElementsAre(1, 2, 3));
 }
 
 TEST(ChosenLattice, KeepsOfTheSourcesLatticeWhatTheChoiceLeavesOpen) {
-  const Lattice source{{0.25, 0.5, 1}, {7, 8, 9}};
+  const IntegerLattice source{{0.25, 0.5, 1}, {7, 8, 9}};
   EXPECT_EQ(chosen_lattice({}, source, kUtm), source);
-  EXPECT_EQ(chosen_lattice({{0.01}, {}}, source, kUtm), (Lattice{{0.01, 0.01, 0.01}, {7, 8, 9}}));
-  EXPECT_EQ(chosen_lattice({{}, {0}}, source, kUtm), (Lattice{{0.25, 0.5, 1}, {0, 0, 0}}));
+  EXPECT_EQ(chosen_lattice({{0.01}, {}}, source, kUtm),
+            (IntegerLattice{{0.01, 0.01, 0.01}, {7, 8, 9}}));
+  EXPECT_EQ(chosen_lattice({{}, {0}}, source, kUtm), (IntegerLattice{{0.25, 0.5, 1}, {0, 0, 0}}));
 }
 
 TEST(ChosenLattice, IsOfMillimetresOrOfTinyPartsOfDegrees) {
@@ -45,7 +46,7 @@ TEST(ChosenLattice, IsOfMillimetresOrOfTinyPartsOfDegrees) {
 }
 
 TEST(ChosenLattice, CountsFromZeroOrFromARoundNumberNearTheCentre) {
-  const Lattice utm = chosen_lattice({}, std::nullopt, kUtm);
+  const IntegerLattice utm = chosen_lattice({}, std::nullopt, kUtm);
   EXPECT_EQ(utm.offset[0], 0) << "430,000 m are 430 million mm";
   EXPECT_EQ(utm.offset[2], 0);
   EXPECT_NEAR(utm.offset[1], 5'700'500, 1000) << "5,700 million mm are no 32-bit integers";
@@ -65,7 +66,7 @@ TEST(ChosenLattice, ReachesAllPointsOfTheExtent) {
       extent.lo[axis] = centre - half;
       extent.hi[axis] = centre + half;
     }
-    const Lattice lattice = chosen_lattice({{}, {}}, std::nullopt, extent);
+    const IntegerLattice lattice = chosen_lattice({{}, {}}, std::nullopt, extent);
     LatticeRounding rounding("out.las", lattice, std::nullopt, extent);
     std::vector<LatticePoint> corners = {LatticePoint(extent.lo), LatticePoint(extent.hi)};
     const std::vector<std::uint64_t> index = {0, 1};
@@ -91,7 +92,7 @@ std::vector<std::uint64_t> counted(std::size_t count) {
 
 TEST(LatticeRounding, TakesTheNearestPointAndRemembersHowFarTheyMoved) {
   const std::vector<LatticePoint> points = random_points(2000, -5000, 5000);
-  const Lattice target{{0.25, 0.01, 3}, {1000, -7, 0.5}};
+  const IntegerLattice target{{0.25, 0.01, 3}, {1000, -7, 0.5}};
   LatticeRounding rounding("out.las", target, std::nullopt, {});
   std::vector<LatticePoint> rounded = points;
   rounding.round(rounded, counted(points.size()));
@@ -113,7 +114,7 @@ TEST(LatticeRounding, TakesTheNearestPointAndRemembersHowFarTheyMoved) {
 }
 
 TEST(LatticeRounding, LeavesPointsOfTheSameLatticeWhereTheyAre) {
-  const Lattice lattice{{0.001, 0.001, 0.01}, {430'000, 5'700'000, -3.3}};
+  const IntegerLattice lattice{{0.001, 0.001, 0.01}, {430'000, 5'700'000, -3.3}};
   std::vector<LatticePoint> points = random_points(2000, -2e9, 2e9);
   for (LatticePoint& point : points) {
     for (double& x : point) x = std::round(x);
@@ -126,8 +127,8 @@ TEST(LatticeRounding, LeavesPointsOfTheSameLatticeWhereTheyAre) {
 }
 
 TEST(LatticeRounding, ReadsIntegersOfTheSourcesLattice) {
-  const Lattice source{{0.5, 0.5, 0.5}, {10, 20, 30}};
-  LatticeRounding rounding("out.las", Lattice{}, source, {});
+  const IntegerLattice source{{0.5, 0.5, 0.5}, {10, 20, 30}};
+  LatticeRounding rounding("out.las", IntegerLattice{}, source, {});
   std::vector<LatticePoint> points = {{2, 4, 7}};
   rounding.round(points, std::vector<std::uint64_t>{0});
   EXPECT_EQ(points[0], (LatticePoint{11, 22, 34})) << "33.5 is half-way, away from 0";
@@ -135,7 +136,7 @@ TEST(LatticeRounding, ReadsIntegersOfTheSourcesLattice) {
 }
 
 TEST(LatticeRounding, NamesTheFirstPointThat32BitsDoNotReach) {
-  const Lattice target{{0.001, 0.001, 0.001}, {0, 0, 0}};
+  const IntegerLattice target{{0.001, 0.001, 0.001}, {0, 0, 0}};
   LatticeRounding rounding("out.las", target, std::nullopt, {});
   std::vector<LatticePoint> points = {
       {2'147'483.647, -2'147'483.648, 0}, {0, 2'147'483.648, 0}, {1e9, 0, 0}};
@@ -151,14 +152,14 @@ TEST(LatticeRounding, NamesTheFirstPointThat32BitsDoNotReach) {
 }
 
 TEST(LatticeRounding, RefusesCoordinatesThatAreNone) {
-  LatticeRounding rounding("out.las", Lattice{}, std::nullopt, {});
+  LatticeRounding rounding("out.las", IntegerLattice{}, std::nullopt, {});
   std::vector<LatticePoint> points = {{0, std::numeric_limits<double>::quiet_NaN(), 0}};
   EXPECT_TRUE(thrown_by([&] { rounding.round(points, std::vector<std::uint64_t>{0}); }));
 }
 
 /// Doubles near 10^9 are 10^-7 apart.
 TEST(LatticeRounding, RefusesALatticeWhoseNeighboursWouldBecomeOnePoint) {
-  const Lattice fine{{1e-8, 1, 1}, {1e9, 0, 0}};
+  const IntegerLattice fine{{1e-8, 1, 1}, {1e9, 0, 0}};
   const Box<3> extent{{1e9 - 1, 0, 0}, {1e9 + 1, 1, 1}};
   const auto error = thrown_by([&] { LatticeRounding("out.las", fine, std::nullopt, extent); });
   ASSERT_TRUE(error);
@@ -172,4 +173,4 @@ TEST(LatticeRounding, RefusesALatticeWhoseNeighboursWouldBecomeOnePoint) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

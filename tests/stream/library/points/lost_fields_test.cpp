@@ -14,7 +14,7 @@
 #include "formats/points/las/records/las_metadata.h"
 #include "formats/points/point_formats.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -95,4 +95,4 @@ TEST(LostFields, AreWaveformsInCopc) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

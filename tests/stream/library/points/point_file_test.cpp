@@ -13,7 +13,7 @@
 #include "formats/inputs/open_points.h"
 #include "tests/formats/inputs/temporary_files.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -96,4 +96,4 @@ TEST_F(PointFileTest, HasHeightsWhereItsFormatWantsThem) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

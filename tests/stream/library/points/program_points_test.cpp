@@ -14,14 +14,14 @@
 
 #include "tests/error_facts.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// A source that gives these blocks.
-class Blocks final : public spillway::PointSource {
+class Blocks final : public PointSource {
  public:
   explicit Blocks(std::vector<std::vector<Point<3>>> blocks, PointsHeader header = {})
       : blocks_(std::move(blocks)), header_(std::move(header)) {}
@@ -44,7 +44,7 @@ TEST(ProgramPoints, OfASystemThatNobodyKnowsAreRefusedWhereAnOutputNeedsIt) {
   ProgramPoints points(source);
   points.settle_crs(CrsNeed::kNone);
   points.settle_crs(CrsNeed::kCodes);
-  EXPECT_THROW(points.settle_crs(CrsNeed::kAll), Error);
+  EXPECT_THROW(points.settle_crs(CrsNeed::kAll), Failure);
 }
 
 TEST(ProgramPoints, ComeAsTheyAreAndAreNumberedThrough) {
@@ -159,4 +159,4 @@ TEST(RefuseTakenPoints, IsAnErrorOfTheProgramOnlyTheSecondTime) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -6,14 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
 
 TEST(PublicPoints, AreInOutputCoordinates) {
   const std::vector<LatticePoint> points = {{2, 4, 1}, {0, 0, 0}};
-  EXPECT_THAT(public_points(Lattice{{0.5, 0.25, 2}, {10, 20, 30}}, points),
+  EXPECT_THAT(public_points(IntegerLattice{{0.5, 0.25, 2}, {10, 20, 30}}, points),
               ElementsAre(Point<3>{11, 21, 32}, Point<3>{10, 20, 30}));
   EXPECT_THAT(public_points(std::nullopt, points),
               ElementsAre(Point<3>{2, 4, 1}, Point<3>{0, 0, 0}));
@@ -25,4 +25,4 @@ TEST(PublicPoints, OfAProgramAreTakenAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

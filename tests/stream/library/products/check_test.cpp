@@ -14,11 +14,11 @@
 namespace spillway {
 namespace {
 
+using test::OwnPoints;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::OwnPoints;
 
 /// A program's own mesh: a square of two triangles.
 class Square : public MeshSource {
@@ -39,7 +39,7 @@ class Square : public MeshSource {
   bool is_read_ = false;
 };
 
-class Check : public testing::CallTest {
+class Check : public test::CallTest {
  protected:
   void make(const std::string& name, int dimension = 2) {
     const Context context(options());

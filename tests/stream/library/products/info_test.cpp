@@ -18,7 +18,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-class Info : public testing::CallTest {
+class Info : public test::CallTest {
  protected:
   void make_points(const std::string& name) {
     const Context context(options());

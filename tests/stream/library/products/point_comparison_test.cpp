@@ -10,14 +10,14 @@
 #include <fstream>
 #include <random>
 
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 using Points = std::vector<Point<3>>;
 
@@ -32,15 +32,15 @@ Points random_points(std::size_t count) {
 
 /// Compares in so little memory that both sides are spilled.
 CheckReport compare(const Points& vertices, const Points& input, int dimension) {
-  const std::string path = testing::TempDir() + "compared" + std::to_string(::getpid()) + ".txt";
+  const std::string path = ::testing::TempDir() + "compared" + std::to_string(::getpid()) + ".txt";
   std::ofstream file(path);
   file.precision(17);
   for (const Point<3>& p : input) file << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
   file.close();
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   PointComparison comparison(dimension, 1 << 18, *scratch);
   for (const Point<3>& vertex : vertices) comparison.add_vertex(WorldPoint(vertex));
-  PointSource source(disk(), {path}, {.dimension = dimension, .index = true});
+  JoinedInputs source(disk(), {path}, {.dimension = dimension, .index = true});
   CheckReport report;
   const Context silent;
   RunWatch watch(silent);
@@ -49,7 +49,7 @@ CheckReport compare(const Points& vertices, const Points& input, int dimension) 
   return report;
 }
 
-class PointComparisonIn : public testing::TestWithParam<int> {};
+class PointComparisonIn : public ::testing::TestWithParam<int> {};
 
 TEST_P(PointComparisonIn, ProvesEqualSetsWhateverTheOrderAndTheDuplicates) {
   const Points vertices = random_points(20'000);
@@ -85,7 +85,7 @@ TEST_P(PointComparisonIn, SeesAMovedVertexFromBothSides) {
   EXPECT_EQ(compare(vertices, input, GetParam()).fault_count, 2U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, PointComparisonIn, testing::Values(2, 3));
+INSTANTIATE_TEST_SUITE_P(Dimensions, PointComparisonIn, ::testing::Values(2, 3));
 
 TEST(PointComparison, SeesAWrongHeight) {
   Points vertices = random_points(5'000);
@@ -103,4 +103,4 @@ TEST(PointComparison, AcceptsAnyHeightBetweenThoseOfThePlace) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

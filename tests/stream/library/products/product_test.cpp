@@ -12,7 +12,7 @@
 
 #include "tests/stream/library/call_test.h"
 
-namespace spillway::testing {
+namespace spillway::test {
 namespace {
 
 /// The volume of tetrahedra, and of triangles the area.
@@ -163,4 +163,4 @@ TEST_F(OwnProducts, BeginWithWhatTheyAreGiven) {
 }
 
 }  // namespace
-}  // namespace spillway::testing
+}  // namespace spillway::test

@@ -58,10 +58,10 @@ class KeptMesh : public MeshSource {
   std::size_t next_ = 0;
 };
 
-class Products : public testing::Test {
+class Products : public ::testing::Test {
  protected:
   Products() {
-    std::string name = testing::TempDir() + "spillway-test-products-XXXXXX";
+    std::string name = ::testing::TempDir() + "spillway-test-products-XXXXXX";
     if (::mkdtemp(name.data()) != nullptr) folder_ = name;
   }
   ~Products() override { fs::remove_all(folder_); }
@@ -167,7 +167,7 @@ TEST_F(Products, PicturesOfTetrahedraAreHullsAndSlices) {
     const auto source = points_in_memory(points);
     triangulate(*source, *picture, {.dimension = 3}, context_);
     EXPECT_THAT(picture->report().description,
-                testing::HasSubstr(slice ? "tetrahedra cut" : "facets of the hull"));
+                ::testing::HasSubstr(slice ? "tetrahedra cut" : "facets of the hull"));
     EXPECT_EQ(picture->report().columns > 0, true);
   }
   const auto source = points_in_memory(points);

@@ -8,10 +8,10 @@
 
 #include "tests/distributed/world.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 TEST(DoTogether, IsDoneOnceByEachRank) {
   std::uint64_t steps = 0;
@@ -47,4 +47,4 @@ TEST(DoTogether, GroupsThatSucceedAreNotHeldUpByOneThatFails) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

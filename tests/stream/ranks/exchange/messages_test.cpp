@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -24,7 +24,7 @@ SourceFacts some_facts() {
   full.header.point_format = 6;
   full.header.coordinates = 2;
   full.header.count = 1234;
-  full.header.lattice = Lattice{{0.1, 0.2, 0.3}, {1, 2, 3}};
+  full.header.lattice = IntegerLattice{{0.1, 0.2, 0.3}, {1, 2, 3}};
   full.header.extent.emplace();
   full.header.extent->expand(Point<3>{7, 8, 9});
   full.header.crs = "EPSG:25832";
@@ -176,4 +176,4 @@ TYPED_TEST(MessagesOfDimension, HoldAnEmptyBorder) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

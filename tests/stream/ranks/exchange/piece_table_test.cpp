@@ -11,17 +11,17 @@
 #include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 /// A table and what it needs.
 struct Table {
-  explicit Table(const std::vector<std::string>& paths, const PointSourceOptions& options = {})
+  explicit Table(const std::vector<std::string>& paths, const JoinedInputsOptions& options = {})
       : source(open_shared_source(disk(), paths, options, world())) {}
 
-  std::unique_ptr<PointSource> source;
+  std::unique_ptr<JoinedInputs> source;
   std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   std::uint64_t told = 0;
@@ -114,7 +114,7 @@ TEST(PieceTable, OfTextCountsFromTheBeginningOfAPiece) {
 TEST(PieceTable, OfThinnedInputsIsWithRankZero) {
   const SharedFolder folder;
   const auto points = points_of_seed(30'000, 5);
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.dimension = 2;
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   options.thinning =
@@ -131,4 +131,4 @@ TEST(PieceTable, OfThinnedInputsIsWithRankZero) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

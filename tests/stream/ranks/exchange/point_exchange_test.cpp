@@ -12,17 +12,17 @@
 #include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 
 /// Points on their way from inputs to ranks.
 struct Road {
   explicit Road(const std::vector<std::string>& paths)
       : source(open_shared_source(disk(), paths, {.dimension = 2}, world())) {}
 
-  std::unique_ptr<PointSource> source;
+  std::unique_ptr<JoinedInputs> source;
   std::unique_ptr<ScratchFolder> scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   StageTimes times;
   PieceTable pieces{*source, world(), *scratch, times, [] {}};
@@ -172,4 +172,4 @@ TEST(PointExchange, DropsIndicesThatNobodyWants) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

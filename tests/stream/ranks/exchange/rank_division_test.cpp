@@ -13,10 +13,10 @@
 #include "src/runtime/packing.h"
 #include "tests/stream/ranks/shared_inputs.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
-using distributed::world;
+using test::world;
 using ::testing::ElementsAre;
 
 RankDivision divide(const std::vector<std::string>& paths, int dimension,
@@ -170,4 +170,4 @@ TEST(RankDivision, HasARankForPointsOutsideOfAllItHasSeen) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(OwnedVertices, WithoutSimplicesWaitUntilAMergeUsesThem) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::vector<std::uint64_t> order_of_all(PointRuns& runs, std::size_t most) {
@@ -35,7 +35,7 @@ TEST(PointRuns, ComeMergedFromAnyNumberOfRunsWithAnyMemory) {
       std::vector<std::uint64_t> keys(count * 1000);
       std::iota(keys.begin(), keys.end(), 0U);
       std::shuffle(keys.begin(), keys.end(), random);
-      const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+      const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
       PointRuns runs(memory, *scratch);
       for (std::size_t begin = 0; begin < keys.size();) {
         // Empty ones, single points, and more than one piece.
@@ -58,7 +58,7 @@ TEST(PointRuns, ComeMergedFromAnyNumberOfRunsWithAnyMemory) {
 }
 
 TEST(PointRuns, TakeTheDiskOnceMoreAtMostWhileTheyAreMerged) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   PointRuns runs(0, *scratch);
   std::mt19937_64 random(1);
   for (std::uint64_t r = 0; r < 64; ++r) {
@@ -76,11 +76,11 @@ TEST(PointRuns, TakeTheDiskOnceMoreAtMostWhileTheyAreMerged) {
 }
 
 TEST(PointRuns, AFullDiskIsAnError) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), 100'000);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), 100'000);
   PointRuns runs(1 << 20, *scratch);
   runs.begin_run();
-  EXPECT_THROW(runs.append(std::vector<RunPoint>(20'000)), Error);
+  EXPECT_THROW(runs.append(std::vector<RunPoint>(20'000)), Failure);
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

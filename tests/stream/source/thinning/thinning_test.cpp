@@ -25,10 +25,10 @@ static void PrintTo(ThinChoice choice, std::ostream* out) {
 
 }  // namespace spillway
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct Indexed {
   LatticePoint point;
@@ -90,7 +90,7 @@ Cloud expected(const Cloud& points, const ThinningOptions& options) {
 /// In the order in which they come.
 Cloud thinned(const Cloud& points, const ThinningOptions& options,
               std::uint64_t* spilled = nullptr) {
-  const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   Thinning thinning(options, *scratch);
   PointBlock block;
   for (const Indexed& p : points) {
@@ -113,7 +113,7 @@ Cloud thinned(const Cloud& points, const ThinningOptions& options,
   return kept;
 }
 
-class EveryChoice : public testing::TestWithParam<ThinChoice> {};
+class EveryChoice : public ::testing::TestWithParam<ThinChoice> {};
 
 TEST_P(EveryChoice, KeepsTheBestPointOfEachCellInTheOrderOfTheCellsWhateverTheMemory) {
   for (const int dimension : {2, 3}) {
@@ -144,13 +144,13 @@ TEST_P(EveryChoice, KeepsTheBestPointOfEachCellWhateverTheOrder) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Choices, EveryChoice,
-                         testing::Values(ThinChoice::kFirst, ThinChoice::kLowest,
-                                         ThinChoice::kHighest, ThinChoice::kCenter),
-                         testing::PrintToStringParamName());
+                         ::testing::Values(ThinChoice::kFirst, ThinChoice::kLowest,
+                                           ThinChoice::kHighest, ThinChoice::kCenter),
+                         ::testing::PrintToStringParamName());
 
 TEST(Thinning, CellsAreThoseOfOutputCoordinates) {
   ThinningOptions options{.cell = 2, .choice = ThinChoice::kCenter, .dimension = 3};
-  options.lattice = Lattice{{0.25, 0.25, 0.25}, {1000.5, -3, 0}};
+  options.lattice = IntegerLattice{{0.25, 0.25, 0.25}, {1000.5, -3, 0}};
   const Cloud points = cloud(20'000, 100);
   EXPECT_EQ(thinned(points, options), expected(points, options));
 }
@@ -159,7 +159,7 @@ TEST(Thinning, WhatIsKeptComesInTheSameBlocksFromMemoryAndFromTheDisk) {
   const Cloud points = cloud(200'000, 2000);
   std::vector<std::vector<std::size_t>> sizes;
   for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
-    const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+    const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
     Thinning thinning({.cell = 1, .memory = memory}, *scratch);
     PointBlock block;
     for (const Indexed& p : points) {
@@ -204,7 +204,7 @@ TEST(Thinning, TellsHowManyOfThePointsPutAsideAreDone) {
 
 TEST(Thinning, AttributesComeThrough) {
   for (const std::uint64_t memory : {std::uint64_t{64} << 20, std::uint64_t{0}}) {
-    const auto scratch = make_scratch_folder(testing::TempDir(), std::nullopt);
+    const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
     Thinning thinning({.cell = 1, .memory = memory}, *scratch);
     thinning.carry(AttributeLayout({{.name = "a", .type = NumberType::kUint32}}));
     PointBlock block;
@@ -232,7 +232,7 @@ TEST(Thinning, CellsThatCannotBeCountedAreRefused) {
   try {
     thinned({{{1e6, 0, 0}, 0}}, {.cell = 1e-12});
     FAIL();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     EXPECT_THAT(error.what(), HasSubstr("cells of 1e-12 are too small"));
   }
 }
@@ -240,4 +240,4 @@ TEST(Thinning, CellsThatCannotBeCountedAreRefused) {
 TEST(Thinning, OfNothingIsNothing) { EXPECT_EQ(thinned({}, {.cell = 1}), Cloud{}); }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 
 #include "src/geometry/framed_point.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 std::int32_t find(const CutLookup& lookup, const LatticePoint& point) {
@@ -109,4 +109,4 @@ TEST(CutLookup, OfRandomCutsIsNotMuchDeeperThanTheLogarithm) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

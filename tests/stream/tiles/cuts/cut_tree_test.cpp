@@ -11,7 +11,7 @@
 
 #include "stream/tiles/cuts/sample_division.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::Each;
@@ -137,4 +137,4 @@ TEST(CutTree, FindsTheSameAsAWalkAfterCutsOfAnyTile) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -41,4 +41,4 @@ TEST(DealtPoints, HaveNoIndicesIfTheBlockHasNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

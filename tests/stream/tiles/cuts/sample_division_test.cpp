@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::Each;
@@ -181,4 +181,4 @@ TEST(SampleDivision, SeparatesNeighbouringDoubles) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

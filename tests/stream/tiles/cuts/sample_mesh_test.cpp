@@ -12,7 +12,7 @@
 
 #include "src/delaunay/delaunay.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -51,8 +51,8 @@ std::multiset<std::array<Point<D>, D + 1>> placed(const SampleMesh<D>& mesh) {
 }
 
 template <typename Dimension>
-class SampleMeshTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class SampleMeshTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(SampleMeshTest, Dimensions);
 
 TYPED_TEST(SampleMeshTest, OfFewPointsHasAllAndTheirFiniteSimplices) {
@@ -61,8 +61,9 @@ TYPED_TEST(SampleMeshTest, OfFewPointsHasAllAndTheirFiniteSimplices) {
   const auto mesh = triangulate_sample<kD>(sample, 10'000);
   std::vector<Point<kD>> points;
   for (const LatticePoint& p : sample) points.push_back(mesh_point<kD>(p));
-  EXPECT_THAT(mesh.points, testing::UnorderedElementsAreArray(points));
-  EXPECT_EQ(mesh.simplices.size(), delaunay<kD>(points, {.threads = 1}).finite_count());
+  EXPECT_THAT(mesh.points, ::testing::UnorderedElementsAreArray(points));
+  EXPECT_EQ(mesh.simplices.size(),
+            delaunay_triangulation<kD>(points, {.threads = 1}).finite_count());
 }
 
 TYPED_TEST(SampleMeshTest, APointWeighsAsManyAsItHasSimplices) {
@@ -142,4 +143,4 @@ TEST(SampleMesh, InThePlaneHeightsDoNotCount) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

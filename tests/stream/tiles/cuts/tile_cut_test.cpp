@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Random points in a box, with up to four segments on the disk.
@@ -232,4 +232,4 @@ TEST(ChooseCut, GoesThroughASegmentRatherThanLeaveAFewPointsAlone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

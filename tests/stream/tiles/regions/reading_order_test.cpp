@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -37,4 +37,4 @@ TEST(ReadingOrder, HasInputsWithoutCellsToo) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::Each;
@@ -225,4 +225,4 @@ TEST(RegionPlan, NestedOrderHasEachRegionWithPointsOnce) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

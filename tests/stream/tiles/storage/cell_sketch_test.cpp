@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using Points = std::vector<LatticePoint>;
@@ -26,7 +26,7 @@ bool holds(const PointSketch<D>& sketch, const LatticePoint& point, std::mt19937
       for (int k = 0; k < D; ++k) corner[k] = point[k] + (i == 0 ? 0 : size * unit(random));
     }
   }
-  RegionBatch<D> regions;
+  ConflictRegionBatch<D> regions;
   regions.set(
       3,
       [](std::size_t s) {
@@ -74,8 +74,8 @@ CellSketch sketched(const Points& points, int dimension, std::size_t most) {
 }
 
 template <typename Dimension>
-class CellSketchTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class CellSketchTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(CellSketchTest, Dimensions);
 
 TYPED_TEST(CellSketchTest, HoldsAllPointsInNoMoreThanItsCells) {
@@ -161,4 +161,4 @@ TYPED_TEST(CellSketchTest, TakesPointsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST(PartedPoints, AllLieBelowACutThatIsNone) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

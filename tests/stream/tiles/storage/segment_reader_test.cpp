@@ -10,7 +10,7 @@
 
 #include "tests/stream/tiles/scratch_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -38,7 +38,7 @@ std::string error_of(const std::vector<TileSegment>& segments) {
   PointBlock points;
   try {
     while (reader.fetch(blocks)) decode_all_points(blocks.bytes, blocks.where, points);
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return "no error";
@@ -144,4 +144,4 @@ TEST(SegmentReader, ShorterFileThanItsSegmentIsRefused) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

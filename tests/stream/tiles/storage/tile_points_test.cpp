@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 TEST(TilePoints, InThePlaneHeightsStandApart) {
@@ -22,4 +22,4 @@ TEST(TilePoints, InThePlaneHeightsStandApart) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 
 #include "tests/stream/tiles/scratch_bytes.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Stretches of one file, to be written one after the other.
@@ -39,7 +39,7 @@ TEST(FileStretch, KnowsWhereItsBytesLie) {
 TEST(FileStretch, JoinedBeforeOrAfterTheWriteHasAllBytes) {
   for (int written = 0; written <= 3; ++written) {  // when the joins are made
     for (const bool last_first : {false, true}) {
-      SCOPED_TRACE(testing::Message() << written << " written, last first " << last_first);
+      SCOPED_TRACE(::testing::Message() << written << " written, last first " << last_first);
       Stretches stretches(3);
       stretches.file->append(std::vector<std::byte>(7));
       for (int i = 0; i < written; ++i) stretches.write(i, 10 + i);
@@ -171,4 +171,4 @@ TEST(JoinSegments, KeepsPointsBoxesAndBytesOfRandomOnes) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

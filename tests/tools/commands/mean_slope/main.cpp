@@ -4,12 +4,12 @@
 
 #include "tools/program.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 Subcommand add_mean_slope(CommandLine& root);
 }
 
 int main(int argc, char** argv) {
-  using namespace spillway::detail;  // NOLINT(google-build-using-namespace)
+  using namespace spillway::test;  // NOLINT(google-build-using-namespace)
   const auto all = subcommands();
   std::vector<AddSubcommand> table(all.begin(), all.end());
   table.push_back(add_mean_slope);

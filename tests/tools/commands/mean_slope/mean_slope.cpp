@@ -12,7 +12,7 @@
 #include "tools/process/rank_job.h"
 #include "tools/report/text_output.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// The mean slope of a terrain, weighed by area.
@@ -45,7 +45,7 @@ struct MeanSlope {
 };
 
 int run(const TerrainOptions& options) {
-  Progress progress = make_progress(options.report, false);
+  ProgressLine progress = make_progress(options.report, false);
   const Context context = terrain_context(options, progress);
   Product<MeanSlope> product(context);
   (void)send_terrain(options, product.sink(), context);
@@ -66,4 +66,4 @@ Subcommand add_mean_slope(CommandLine& root) {
   return {&app, [options] { return run(*options); }, true};
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::test

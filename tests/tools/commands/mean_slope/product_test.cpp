@@ -11,10 +11,10 @@
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
 
-namespace spillway::detail::test {
+namespace spillway::test {
 namespace {
 
-class AddedProduct : public testing::Test {
+class AddedProduct : public ::testing::Test {
  protected:
   AddedProduct() { work_.succeed("spillway generate -q terrain -n 100000 --seed 5 -o in.las"); }
 
@@ -34,12 +34,12 @@ TEST_F(AddedProduct, IsRightWhereItIsKnown) {
 TEST_F(AddedProduct, IsTheSameFromPointsAndMeshesByThreadsAndTiles) {
   const std::string expected = mean_slope("in.las --threads 1");
   work_.succeed("spillway triangulate -q in.las -o mesh.spm");
-  EXPECT_THAT(expected, testing::StartsWith(fmt::format(
+  EXPECT_THAT(expected, ::testing::StartsWith(fmt::format(
                             "{} triangles, {} vertices,",
                             work_.info("mesh.spm").at("simplices").get<std::uint64_t>(),
                             work_.info("mesh.spm").at("vertices").get<std::uint64_t>())));
   EXPECT_EQ(mean_slope("in.las --threads 2"), expected);
-  EXPECT_EQ(mean_slope("in.las --tile 2000 --memory 32M --threads 2"), expected);
+  EXPECT_EQ(mean_slope("in.las --tile-points 2000 --memory 32M --threads 2"), expected);
   EXPECT_EQ(mean_slope("mesh.spm"), expected);
   EXPECT_EQ(work_.succeed("cat in.las | " + mean_slope_command_path() + " mean-slope -q -"),
             expected);
@@ -59,4 +59,4 @@ TEST_F(AddedProduct, IsTheSameOverRanks) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::test
+}  // namespace spillway::test

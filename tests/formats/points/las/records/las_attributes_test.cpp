@@ -17,7 +17,7 @@
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/laz/laz_encoder/random_records.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -151,7 +151,7 @@ TEST(LasExtraBytes, AreTheAttributesThatTheirRecordTells) {
 TEST(LasExtraBytes, HoldWhatThePointFormatHasNoPlaceFor) {
   FaultyFileSystem files;
   PointWriterOptions options;
-  options.lattice = Lattice{{1, 1, 1}, {0, 0, 0}};
+  options.lattice = IntegerLattice{{1, 1, 1}, {0, 0, 0}};
   options.attributes = AttributeLayout(
       {{.name = "intensity", .type = NumberType::kFloat64}, {.name = "pulse width"}});
   const auto writer = open_point_writer(files, "a.las", options);
@@ -170,7 +170,7 @@ TEST(LasExtraBytes, ThatLasCannotHoldAreRefusedByName) {
   const auto write = [](const Attribute& attribute, double number) {
     FaultyFileSystem files;
     PointWriterOptions options;
-    options.lattice = Lattice{{1, 1, 1}, {0, 0, 0}};
+    options.lattice = IntegerLattice{{1, 1, 1}, {0, 0, 0}};
     options.attributes = AttributeLayout({attribute});
     const auto writer = open_point_writer(files, "a.las", options);
     std::vector<std::byte> record(options.attributes.record_size());
@@ -190,7 +190,7 @@ TEST(LasExtraBytes, AreAsManyAsTheirRecordDescribes) {
   const auto write = [](std::size_t count) {
     FaultyFileSystem files;
     PointWriterOptions options;
-    options.lattice = Lattice{{1, 1, 1}, {0, 0, 0}};
+    options.lattice = IntegerLattice{{1, 1, 1}, {0, 0, 0}};
     std::vector<Attribute> attributes;
     for (std::size_t a = 0; a < count; ++a) {
       attributes.push_back({.name = "n" + std::to_string(a), .type = NumberType::kUint8});
@@ -226,4 +226,4 @@ TEST(LasMetadata, OfSeveralFilesIsWhatTheyTellAlike) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -11,7 +11,7 @@
 #include "tests/formats/points/laz/laz_encoder/fields.h"
 #include "tests/formats/points/laz/laz_encoder/items_v1_encoder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 const std::byte* bytes_at(const std::string& record, std::size_t at) {
@@ -92,4 +92,4 @@ std::string encode_laz_chunk(const std::vector<LazItem>& items,
   return encode_as_written(format, records);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

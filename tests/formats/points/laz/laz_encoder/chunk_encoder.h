@@ -6,7 +6,7 @@
 
 #include "formats/points/laz/chunk_decoder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 struct LazChunkOptions {
   /// Layered: writes also the layers in which nothing changes.
@@ -21,4 +21,4 @@ std::string encode_laz_chunk(const std::vector<LazItem>& items,
                              std::span<const std::string> records,
                              const LazChunkOptions& options = {});
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

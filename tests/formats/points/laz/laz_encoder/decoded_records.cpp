@@ -5,7 +5,7 @@
 
 #include "src/error.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 class MemoryBytes : public LazBytes {
@@ -38,7 +38,7 @@ std::string decode_laz_records(LazChunkDecoder& decoder, std::size_t record_leng
     decoder.decode_records(some);
     left = left.subspan(some.size());
   }
-  if (decoder.end() > 0) throw Error("the chunk is longer than its records");
+  if (decoder.end() > 0) throw Failure("the chunk is longer than its records");
   return records;
 }
 
@@ -48,4 +48,4 @@ std::string decode_laz_records(const LazChunkFormat& format, std::span<const std
   return decode_laz_records(decoder, record_length_of(format), chunk, count);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 
 #include "formats/points/laz/coding/record_fields.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// The little-endian value at a place in a record.
 template <typename T>
@@ -29,4 +29,4 @@ using laz::kZ;
 namespace core10 = laz::core10;
 namespace core14 = laz::core14;
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -7,7 +7,7 @@
 #include "formats/points/laz/coding/record_fields.h"
 #include "formats/points/laz/encoding/integer_encoder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 using laz::ArithmeticEncoder;
@@ -195,4 +195,4 @@ std::unique_ptr<laz::ItemEncoder> make_any_item_encoder(const LazItem& item) {
   return laz::make_item_encoder(item);
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -5,9 +5,9 @@
 
 #include "formats/points/laz/encoding/item_encoder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// An item of a pointwise chunk, of any version.
 std::unique_ptr<laz::ItemEncoder> make_any_item_encoder(const LazItem& item);
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/points/las_flags_layout.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 constexpr const char* kName = "a.laz";
@@ -57,7 +57,7 @@ DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const 
       count += block.size();
       if (count > endless) throw std::logic_error("points without end");
     });
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     const std::string message = error.what();
     if (!message.starts_with(std::string(kName) + ": ") || message.find('\n') != message.npos) {
       throw std::logic_error("a bad message: " + message);
@@ -67,4 +67,4 @@ DamageOutcome read_damaged_laz(const std::string& content, bool seekable, const 
   return same && count == sound.size() ? DamageOutcome::kRight : DamageOutcome::kOther;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 
 // The encoder against streams that a reference encoder made of the same values.
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 std::string from_hex(std::string_view hex) {
@@ -146,4 +146,4 @@ TEST(LazEncoder, WritesTheReferenceLayeredChunks) {
 }
 
 }  // namespace
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

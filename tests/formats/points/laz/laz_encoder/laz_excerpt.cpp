@@ -5,7 +5,7 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 LazExcerpts::LazExcerpts(std::string bytes) : bytes_(std::move(bytes)) {
   FaultyFileSystem files;
@@ -55,4 +55,4 @@ PointBlock LazExcerpts::points(const PointBlock& whole, std::size_t i) const {
   return part;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,7 +8,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/laz/chunk_table.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Cuts a sound LAZ file into files of one chunk each. Chunks are independent, so what damage does
 /// to one shows in such a file as well, and reading it takes a fraction of the time.
@@ -39,4 +39,4 @@ class LazExcerpts {
   std::vector<LazChunk> chunks_;
 };
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

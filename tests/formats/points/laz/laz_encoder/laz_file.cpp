@@ -6,7 +6,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/points/laz/chunk_table_bytes.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 std::vector<LazItem> laz_items(int point_format, std::size_t extra_bytes, int version) {
   const auto items_version = static_cast<std::uint16_t>(version);
@@ -144,4 +144,4 @@ std::string LazFile::bytes() const {
   return file;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -10,7 +10,7 @@
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/laz/laz_encoder/chunk_encoder.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// How records are to be compressed.
 struct LazFormat {
@@ -74,4 +74,4 @@ std::string laz_table_bytes(std::span<const LazFile::TableEntry> table, bool wit
 /// The records in chunks, with the lowest LAS version (from 1.2) that has the point format.
 LazFile make_laz_file(const LazFormat& format, std::span<const std::string> records);
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

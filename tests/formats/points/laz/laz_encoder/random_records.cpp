@@ -9,7 +9,7 @@
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/laz/laz_encoder/fields.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 namespace {
 
 /// What lies in a record behind the core: the offsets of its fields, 0 if it has none.
@@ -241,4 +241,4 @@ LasFlags attributes_of_record(int point_format, const std::string& record) {
   return attributes;
 }
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -6,7 +6,7 @@
 #include "formats/points/common/point_reader.h"
 #include "formats/points/las/records/las_flags.h"
 
-namespace spillway::detail::testing {
+namespace spillway::test {
 
 /// Records like those of a scanner: pulses with returns, channels that take turns, GPS times that
 /// run, repeat and jump, and now and then the extremes of each field.
@@ -26,4 +26,4 @@ struct RandomRecords {
 LatticePoint point_of_record(const std::string& record);
 LasFlags attributes_of_record(int point_format, const std::string& record);
 
-}  // namespace spillway::detail::testing
+}  // namespace spillway::test

@@ -8,19 +8,21 @@
 #include <memory>
 #include <vector>
 
-namespace spillway::detail {
+#include "src/rooms.h"
+
+namespace spillway::delaunay {
 
 /// Serves the thread that made it, from its construction to its destruction. One at a time a
 /// thread.
-class KernelArena {
+class InsertionArena {
  public:
-  KernelArena();
-  ~KernelArena();
-  KernelArena(const KernelArena&) = delete;
-  KernelArena& operator=(const KernelArena&) = delete;
+  InsertionArena();
+  ~InsertionArena();
+  InsertionArena(const InsertionArena&) = delete;
+  InsertionArena& operator=(const InsertionArena&) = delete;
 
   /// The calling thread's arena; there must be one.
-  static KernelArena& current();
+  static InsertionArena& current();
 
   /// Memory that lasts as long as the arena, aligned for any type. Throws std::bad_alloc.
   void* allocate(std::size_t bytes);
@@ -46,19 +48,19 @@ class KernelArena {
 
 /// An allocator of the standard's form that takes from the calling thread's arena.
 template <typename T>
-struct KernelAllocator {
+struct InsertionAllocator {
   using value_type = T;
 
-  KernelAllocator() = default;
+  InsertionAllocator() = default;
   template <typename U>
-  explicit(false) KernelAllocator(const KernelAllocator<U>&) {}
+  explicit(false) InsertionAllocator(const InsertionAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
-    return static_cast<T*>(KernelArena::current().allocate(count * sizeof(T)));
+    return static_cast<T*>(InsertionArena::current().allocate(count * sizeof(T)));
   }
   void deallocate(T*, std::size_t) {}
 
-  bool operator==(const KernelAllocator&) const { return true; }
+  bool operator==(const InsertionAllocator&) const { return true; }
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -1,21 +1,21 @@
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "stream/source/ordered_blocks.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 namespace {
 
 /// What readers have to give, so that the filter can look at it.
-PointReaderOptions reader_options(const PointSourceOptions& options) {
+PointReaderOptions reader_options(const JoinedInputsOptions& options) {
   PointReaderOptions reader = options.reader;
   if (options.filter.bounds) reader.bounds = options.filter.loose_bounds();
   return reader;
 }
 
-HeaderSurveyOptions survey_options(const PointSourceOptions& options) {
+HeaderSurveyOptions survey_options(const JoinedInputsOptions& options) {
   return {.dimension = options.dimension,
           .reader = reader_options(options),
           .filter = options.filter,
@@ -33,20 +33,20 @@ std::uint64_t first_record(const RawPoints& raw) {
 
 }  // namespace
 
-PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
-                         const PointSourceOptions& options)
-    : PointSource(files, options, survey_headers(files, paths, survey_options(options)), "") {
+JoinedInputs::JoinedInputs(FileSystem& files, const std::vector<std::string>& paths,
+                           const JoinedInputsOptions& options)
+    : JoinedInputs(files, options, survey_headers(files, paths, survey_options(options)), "") {
   for (const SourceFacts::Input& input : facts_.inputs) lost_in_headers_ += input.header.lost;
 }
 
-PointSource::PointSource(FileSystem& files, const std::vector<std::string>& paths,
-                         const PointSourceOptions& options, const SourceFacts& facts)
-    : PointSource(files, options, HeaderSurvey{facts, {}, paths, {}}, options.viewer) {
+JoinedInputs::JoinedInputs(FileSystem& files, const std::vector<std::string>& paths,
+                           const JoinedInputsOptions& options, const SourceFacts& facts)
+    : JoinedInputs(files, options, HeaderSurvey{facts, {}, paths, {}}, options.viewer) {
   tells_ = false;
 }
 
-PointSource::PointSource(FileSystem& files, const PointSourceOptions& options, HeaderSurvey survey,
-                         std::string viewer)
+JoinedInputs::JoinedInputs(FileSystem& files, const JoinedInputsOptions& options,
+                           HeaderSurvey survey, std::string viewer)
     : options_(options),
       facts_(std::move(survey.facts)),
       coordinates_(facts_, options.dimension, options.filter, options.detail),
@@ -71,7 +71,7 @@ PointSource::PointSource(FileSystem& files, const PointSourceOptions& options, H
 }
 
 /// As points at its edges have it, to the last bit: headers may round otherwise.
-std::optional<Box<3>> PointSource::find_world_extent() const {
+std::optional<Box<3>> JoinedInputs::find_world_extent() const {
   const std::optional<Box<3>>& bounds = options_.filter.bounds;
   if (!facts_.extent(bounds)) return std::nullopt;
   Box<3> extent;
@@ -84,21 +84,21 @@ std::optional<Box<3>> PointSource::find_world_extent() const {
   return bounds ? common_part(extent, *bounds) : extent;
 }
 
-bool PointSource::leaves_out() const {
+bool JoinedInputs::leaves_out() const {
   return options_.filter.active() || options_.thinning || options_.reader.resolution > 0 ||
          options_.reader.salvage;
 }
 
-std::optional<std::uint64_t> PointSource::count() const {
+std::optional<std::uint64_t> JoinedInputs::count() const {
   return leaves_out() ? std::nullopt : facts_.records();
 }
 
-std::optional<std::uint64_t> PointSource::expected() const {
+std::optional<std::uint64_t> JoinedInputs::expected() const {
   return thins() ? std::nullopt : facts_.expected(options_.filter);
 }
 
 /// Of regions also what the plan of a run knows of each.
-std::uint64_t PointSource::known_bytes() const {
+std::uint64_t JoinedInputs::known_bytes() const {
   constexpr std::uint64_t kInputBytes = sizeof(SourceFacts::Input) + 512;  // with texts, and places
   constexpr std::uint64_t kPlanBytes = 64;
   std::uint64_t bytes = 0;
@@ -109,17 +109,17 @@ std::uint64_t PointSource::known_bytes() const {
   return bytes + regions_.all().size() * (sizeof(InputRegion) + kPlanBytes);
 }
 
-std::span<const InputRegion> PointSource::regions() const {
+std::span<const InputRegion> JoinedInputs::regions() const {
   if (thins()) return {};
   return regions_.all();
 }
 
 /// A pipe may wait for another one to be read.
-bool PointSource::any_order() const {
+bool JoinedInputs::any_order() const {
   return std::ranges::none_of(facts_.inputs, &SourceFacts::Input::opens_once);
 }
 
-void PointSource::keep_to(const RegionOrder& order) {
+void JoinedInputs::keep_to(const RegionOrder& order) {
   positions_.resize(order.regions.size());
   for (std::size_t p = 0; p < positions_.size(); ++p) positions_[order.regions[p]] = p;
   std::vector<ReadingTurn> turns;
@@ -128,7 +128,7 @@ void PointSource::keep_to(const RegionOrder& order) {
 }
 
 /// Withheld points may be those at the edges: then it takes another look to know the extent.
-std::optional<Box<2>> PointSource::told_extent() const {
+std::optional<Box<2>> JoinedInputs::told_extent() const {
   const auto is_certain = [](const SourceFacts::Input& input) {
     return !input.header.regions.empty() && !input.may_withhold();
   };
@@ -145,7 +145,7 @@ std::optional<Box<2>> PointSource::told_extent() const {
   return extent.empty() ? std::nullopt : std::optional(plane_of(extent));
 }
 
-bool PointSource::read_again(bool as_planned) {
+bool JoinedInputs::read_again(bool as_planned) {
   if (thins() || !any_order()) return false;
   if (!as_planned) positions_.clear();
   pieces_.read_again(as_planned);
@@ -154,13 +154,13 @@ bool PointSource::read_again(bool as_planned) {
   return true;
 }
 
-void PointSource::save_counts(StateWriter& state) {
+void JoinedInputs::save_counts(StateWriter& state) {
   state.section("counts");
   PointCounts own = thins() ? counts() : counts_;
   state(own, untold_);
 }
 
-void PointSource::restore_counts(StateReader& state) {
+void JoinedInputs::restore_counts(StateReader& state) {
   state.section("counts");
   PointCounts own;
   state(own, untold_);
@@ -171,7 +171,7 @@ void PointSource::restore_counts(StateReader& state) {
   }
 }
 
-void PointSource::save(StateWriter& state) {
+void JoinedInputs::save(StateWriter& state) {
   state.section("points");
   if (thins()) {
     PointCounts all = counts();
@@ -180,7 +180,7 @@ void PointSource::save(StateWriter& state) {
   state(pieces_, counts_, untold_);
 }
 
-void PointSource::restore(StateReader& state) {
+void JoinedInputs::restore(StateReader& state) {
   state.section("points");
   if (!thins()) return state(pieces_, counts_, untold_);
   std::uint64_t blocks = 0;
@@ -195,17 +195,17 @@ void PointSource::restore(StateReader& state) {
   }
 }
 
-void PointSource::settle_crs(CrsNeed need) {
+void JoinedInputs::settle_crs(CrsNeed need) {
   facts_.crs = settled_crs(facts_, need, {options_.crs, options_.warn, options_.detail});
 }
 
-std::vector<PointHeader> PointSource::headers() const {
+std::vector<PointHeader> JoinedInputs::headers() const {
   std::vector<PointHeader> headers;
   for (const SourceFacts::Input& input : facts_.inputs) headers.push_back(input.header);
   return headers;
 }
 
-void PointSource::carry(const AttributeChoice& choice) {
+void JoinedInputs::carry(const AttributeChoice& choice) {
   AttributeChoice read = choice;
   const std::vector<std::string> filtered = options_.filter.attributes();
   read.names.insert(read.names.end(), filtered.begin(), filtered.end());
@@ -216,7 +216,7 @@ void PointSource::carry(const AttributeChoice& choice) {
   if (thinning_) thinning_->carry(attributes_);
 }
 
-bool PointSource::fetch(SourcePiece& piece) {
+bool JoinedInputs::fetch(SourcePiece& piece) {
   if (!thins()) {
     if (!pieces_.fetch(piece)) return false;
     if (positions_.empty()) return true;
@@ -231,7 +231,7 @@ bool PointSource::fetch(SourcePiece& piece) {
   return !has_all_thinned_;
 }
 
-void PointSource::decode(SourcePiece& piece, PointBlock& block) {
+void JoinedInputs::decode(SourcePiece& piece, PointBlock& block) {
   if (piece.reader) {
     decode_input(piece, block);
   } else {
@@ -240,14 +240,14 @@ void PointSource::decode(SourcePiece& piece, PointBlock& block) {
   if (!options_.index) block.index = {};
 }
 
-bool PointSource::read(PointBlock& block) {
+bool JoinedInputs::read(PointBlock& block) {
   SourcePiece piece;
   block.clear();
   while (block.size() == 0 && fetch(piece)) decode(piece, block);
   return block.size() > 0;
 }
 
-void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
+void JoinedInputs::decode_input(SourcePiece& piece, PointBlock& block) {
   piece.reader->decode(piece.raw, block);
   if (block.attributes.empty()) {
     block.attributes.resize(block.size() * read_attributes_.record_size());
@@ -280,10 +280,10 @@ void PointSource::decode_input(SourcePiece& piece, PointBlock& block) {
 }
 
 /// The points of all inputs reach the cells in their order.
-void PointSource::thin_inputs() {
+void JoinedInputs::thin_inputs() {
   class InputPoints final : public PointFeed {
    public:
-    explicit InputPoints(PointSource& source) : source_(source) {}
+    explicit InputPoints(JoinedInputs& source) : source_(source) {}
     bool fetch(SourcePiece& piece) override {
       source_.options_.progress(source_.points_read(), source_.fraction_read());
       return source_.pieces_.fetch(piece);
@@ -293,13 +293,13 @@ void PointSource::thin_inputs() {
     }
 
    private:
-    PointSource& source_;
+    JoinedInputs& source_;
   } points(*this);
   for_each_block(points, [this](PointBlock& block) { thinning_->add(block); });
   thinned_ = true;
 }
 
-PointCounts PointSource::counts() const {
+PointCounts JoinedInputs::counts() const {
   if (counts_before_) return *counts_before_;
   const std::lock_guard lock(counts_mutex_);
   PointCounts counts = counts_;
@@ -308,9 +308,9 @@ PointCounts PointSource::counts() const {
   return counts;
 }
 
-std::uint64_t PointSource::points_read() const {
+std::uint64_t JoinedInputs::points_read() const {
   const std::lock_guard lock(counts_mutex_);
   return counts_.read;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

@@ -1,4 +1,4 @@
-#include "stream/checker/open_vertices.h"
+#include "stream/checker/needed_vertices.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 template <int D>
-void OpenVertices<D>::enter(const MeshBlock& block, std::vector<Point<D>>& points,
-                            std::vector<std::uint32_t>& slots) {
+void NeededVertices<D>::enter(const MeshStreamBlock& block, std::vector<Point<D>>& points,
+                              std::vector<std::uint32_t>& slots) {
   slots.clear();
   for (std::size_t v = 0; v < points.size(); ++v) {
     slots.push_back(add(points[v], importable_.announced() + v));
@@ -18,7 +18,7 @@ void OpenVertices<D>::enter(const MeshBlock& block, std::vector<Point<D>>& point
   for (const std::uint64_t number : block.imported) {
     const std::uint32_t* const slot = importable_.find(number);
     if (slot == nullptr) {
-      throw Error(
+      throw Failure(
           fmt::format("the mesh stream uses vertex {}, which has not come yet or is finalized; "
                       "write the file again",
                       number),
@@ -31,12 +31,12 @@ void OpenVertices<D>::enter(const MeshBlock& block, std::vector<Point<D>>& point
 }
 
 template <int D>
-std::uint32_t OpenVertices<D>::add(const Point<D>& point, std::uint64_t number) {
+std::uint32_t NeededVertices<D>::add(const Point<D>& point, std::uint64_t number) {
   if (free_.empty()) {
     if (vertices_.size() > std::numeric_limits<std::uint32_t>::max()) {
-      throw Error(fmt::format("the mesh stream has {} vertices open at a time, too many to check",
-                              vertices_.size()),
-                  ErrorCode::kTooLarge);
+      throw Failure(fmt::format("the mesh stream has {} vertices open at a time, too many to check",
+                                vertices_.size()),
+                    ErrorCode::kTooLarge);
     }
     free_.push_back(static_cast<std::uint32_t>(vertices_.size()));
     vertices_.emplace_back();
@@ -48,18 +48,18 @@ std::uint32_t OpenVertices<D>::add(const Point<D>& point, std::uint64_t number) 
 }
 
 template <int D>
-void OpenVertices<D>::finalize(std::uint32_t slot) {
+void NeededVertices<D>::finalize(std::uint32_t slot) {
   Vertex& vertex = vertices_[slot];
   if (vertex.finalized) {
-    throw Error(fmt::format("the mesh stream finalizes vertex {} twice; write the file again",
-                            vertex.number),
-                ErrorCode::kBadInput, {.place = at_record(vertex.number)});
+    throw Failure(fmt::format("the mesh stream finalizes vertex {} twice; write the file again",
+                              vertex.number),
+                  ErrorCode::kBadInput, {.place = at_record(vertex.number)});
   }
   vertex.finalized = true;
   if (vertex.holders == 0) free_.push_back(slot);
 }
 
-template class OpenVertices<2>;
-template class OpenVertices<3>;
+template class NeededVertices<2>;
+template class NeededVertices<3>;
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

@@ -1,6 +1,6 @@
 // Regions of many simplices at a time: as each says by itself.
 
-#include "src/delaunay/border/region_batch.h"
+#include "src/delaunay/border/conflict_region_batch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 #include "src/delaunay/delaunay.h"
 #include "src/geometry/predicates.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 /// Simplices in any order, finite and infinite ones, many of them too flat for a batch to certify.
@@ -41,7 +41,7 @@ struct Simplices {
       p[0] = turned;
       input.push_back(p);
     }
-    const Triangulation<D> mesh = delaunay<D>(input, {.threads = 1});
+    const Triangulation<D> mesh = delaunay_triangulation<D>(input, {.threads = 1});
     points.assign(mesh.points.begin(), mesh.points.end());
     mesh.for_each_simplex(
         [&](SimplexId, const Simplex<D>& simplex) { corners.push_back(simplex.vertices); });
@@ -51,7 +51,7 @@ struct Simplices {
   [[nodiscard]] ConflictRegion<D> region(std::size_t s) const { return {corners[s], points}; }
 
   /// A batch of those from `first` on.
-  void set(RegionBatch<D>& regions, std::size_t first, std::size_t count) const {
+  void set(ConflictRegionBatch<D>& regions, std::size_t first, std::size_t count) const {
     regions.set(
         count, [&](std::size_t s) { return corners[first + s]; }, points);
   }
@@ -102,15 +102,15 @@ std::uint64_t low_bits(std::size_t count) {
 }
 
 template <typename Dimension>
-class RegionBatchTest : public testing::Test {};
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+class RegionBatchTest : public ::testing::Test {};
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(RegionBatchTest, Dimensions);
 
 TYPED_TEST(RegionBatchTest, AnswersAsEachRegionDoes) {
   constexpr int kD = TypeParam::value;
   const Simplices<kD> simplices(1);
   std::mt19937_64 random(2);
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   std::size_t vague = 0;
   for (const std::size_t count : {64, 63, 17, 1}) {
     for (std::size_t first = 0; first + count <= simplices.corners.size(); first += 2 * count + 5) {
@@ -139,7 +139,7 @@ TYPED_TEST(RegionBatchTest, AnswersWhatIsKnownOfEachAloneButForFlatOnes) {
   constexpr int kD = TypeParam::value;
   const Simplices<kD> simplices(3);
   std::mt19937_64 random(4);
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   simplices.set(regions, 0, 64);
   std::size_t compared = 0;
   for (int b = 0; b < 100; ++b) {
@@ -158,7 +158,7 @@ TYPED_TEST(RegionBatchTest, NeverMissesAPointThatChangesASimplex) {
   constexpr int kD = TypeParam::value;
   const Simplices<kD> simplices(5);
   std::mt19937_64 random(6);
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   std::size_t changed = 0;
   for (std::size_t first = 0; first + 64 <= simplices.corners.size(); first += 64) {
     simplices.set(regions, first, 64);
@@ -182,7 +182,7 @@ TYPED_TEST(RegionBatchTest, ForgetsTheBatchBefore) {
   for (std::size_t s = 0; s < simplices.corners.size(); ++s) {
     (simplices.region(s).infinite() ? infinite : finite).push_back(simplices.corners[s]);
   }
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   regions.set(
       3, [&](std::size_t s) { return infinite[s]; }, simplices.points);
   EXPECT_EQ(regions.infinite(), 0b111U);
@@ -200,7 +200,7 @@ TYPED_TEST(RegionBatchTest, OfATreeOnlyLeavesCount) {
   constexpr int kD = TypeParam::value;
   const Simplices<kD> simplices(8);
   std::mt19937_64 random(9);
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   simplices.set(regions, 0, 64);
   for (int round = 0; round < 20; ++round) {
     BoxTree<kD> tree;
@@ -228,7 +228,7 @@ TYPED_TEST(RegionBatchTest, OfASketchItsBoxesAndPlatesCount) {
   constexpr int kD = TypeParam::value;
   const Simplices<kD> simplices(10);
   std::mt19937_64 random(11);
-  RegionBatch<kD> regions;
+  ConflictRegionBatch<kD> regions;
   simplices.set(regions, 0, 64);
   std::size_t fewer = 0;
   for (const std::size_t count : {1, 4, 5, 21}) {
@@ -271,7 +271,7 @@ TYPED_TEST(RegionBatchTest, BatchesHoldAllInOrderAndTheLastOneWhatIsLeft) {
     std::vector<std::uint64_t> bits;
     for_each_region_batch<kD>(
         count, [&](std::size_t s) { return simplices.corners[s]; }, simplices.points,
-        [&](std::size_t first, const RegionBatch<kD>& regions) {
+        [&](std::size_t first, const ConflictRegionBatch<kD>& regions) {
           firsts.push_back(first);
           bits.push_back(regions.all());
         });
@@ -305,4 +305,4 @@ TYPED_TEST(RegionBatchTest, EachRegionComesOnceWithItsOwnSimplex) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -10,11 +10,11 @@
 #include "formats/meshes/common/stream_numbers.h"
 #include "src/delaunay/common/hash.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// The facets of one simplex only, of a stream of simplices given by their vertices' numbers.
 template <int D>
-class OpenFacets {
+class UnpairedFacets {
  public:
   using Facet = std::array<std::uint64_t, D>;
 
@@ -70,4 +70,4 @@ class OpenFacets {
   std::unordered_set<Facet, Hash> open_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

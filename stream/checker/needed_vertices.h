@@ -7,12 +7,12 @@
 #include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::checker {
 
 /// The vertices of a mesh stream that may still be needed: those not finalized, and those that
 /// somebody holds. Each has a slot, which is used again once it is free.
 template <int D>
-class OpenVertices {
+class NeededVertices {
  public:
   struct Vertex {
     Point<D> point;
@@ -27,12 +27,12 @@ class OpenVertices {
 
   /// Gives the block's new vertices, whose coordinates are `points`, their numbers and slots.
   /// Appends the points of imported ones, and sets `slots`: both are then by short number.
-  /// Later blocks cannot import what the block finalizes. Throws Error for a vertex that cannot be
+  /// Later blocks cannot import what the block finalizes. Throws Failure for a vertex that cannot be
   /// imported.
-  void enter(const MeshBlock& block, std::vector<Point<D>>& points,
+  void enter(const MeshStreamBlock& block, std::vector<Point<D>>& points,
              std::vector<std::uint32_t>& slots);
 
-  /// The vertex is needed no more, unless it is held. Throws Error if it has been finalized before.
+  /// The vertex is needed no more, unless it is held. Throws Failure if it has been finalized before.
   void finalize(std::uint32_t slot);
 
   /// Keeps a vertex, finalized or not, until as many calls of release().
@@ -64,4 +64,4 @@ class OpenVertices {
   StreamVertices<std::uint32_t> importable_;  // slots
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::checker

@@ -27,7 +27,7 @@
 #include "stream/source/source_facts.h"
 #include "stream/source/thinning/thinning.h"
 
-namespace spillway::detail {
+namespace spillway::stream {
 
 /// One point a cell, as Thinning does it.
 struct ThinningRequest {
@@ -38,7 +38,7 @@ struct ThinningRequest {
   ThinningProgress progress{};
 };
 
-struct PointSourceOptions {
+struct JoinedInputsOptions {
   int dimension = 2;            ///< in which they are triangulated; 0: they are not
   bool index = false;           ///< fill PointBlock::index
   PointReaderOptions reader{};  ///< bounds are set by the filter
@@ -58,16 +58,16 @@ struct PointSourceOptions {
 
 /// All inputs as one: one after the other, each in its own order, filtered, in common coordinates.
 /// If they are thinned, the first fetch() reads all of them.
-class PointSource : public PointStream {
+class JoinedInputs : public PointStream {
  public:
-  /// Reads all headers (survey_headers). Throws Error for inputs that cannot be read together.
-  PointSource(FileSystem& files, const std::vector<std::string>& paths,
-              const PointSourceOptions& options);
+  /// Reads all headers (survey_headers). Throws Failure for inputs that cannot be read together.
+  JoinedInputs(FileSystem& files, const std::vector<std::string>& paths,
+               const JoinedInputsOptions& options);
 
   /// The same inputs, looked at by another process: none is opened before it is read. begin_piece()
-  /// throws Error for one that is another file here than there, by its digest.
-  PointSource(FileSystem& files, const std::vector<std::string>& paths,
-              const PointSourceOptions& options, const SourceFacts& facts);
+  /// throws Failure for one that is another file here than there, by its digest.
+  JoinedInputs(FileSystem& files, const std::vector<std::string>& paths,
+               const JoinedInputsOptions& options, const SourceFacts& facts);
 
   /// Whether blocks come with the index of their points. To be called before they are read.
   void set_index(bool index) { options_.index = index; }
@@ -84,7 +84,7 @@ class PointSource : public PointStream {
   /// Notices that came to light while points were read of files that another process looked at:
   /// that one is to tell them.
   [[nodiscard]] const std::vector<std::string>& untold() const { return untold_; }
-  /// Those that cannot be read and are left out (PointSourceOptions::skip_broken). What another
+  /// Those that cannot be read and are left out (JoinedInputsOptions::skip_broken). What another
   /// process looked at, that one tells.
   [[nodiscard]] const std::vector<SkippedFile>& skipped() const { return skipped_; }
 
@@ -110,7 +110,7 @@ class PointSource : public PointStream {
   bool read(PointBlock& block);
 
   /// The lattice on which all inputs lie, if there is one (find_common_lattice).
-  [[nodiscard]] const std::optional<Lattice>& lattice() const override {
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override {
     return coordinates_.lattice();
   }
   /// Records in all inputs, where all headers tell and no filter is set; withheld ones may be among
@@ -123,7 +123,7 @@ class PointSource : public PointStream {
   [[nodiscard]] const std::optional<Box<3>>& world_extent() const { return world_extent_; }
   /// Of the first input that names a coordinate system; or the one that is given.
   [[nodiscard]] const std::string& crs() const { return facts_.crs; }
-  /// Makes crs() what an output needs. Throws Error if that takes GDAL, and it is not there.
+  /// Makes crs() what an output needs. Throws Failure if that takes GDAL, and it is not there.
   void settle_crs(CrsNeed need);
   /// Of all inputs, in their order.
   [[nodiscard]] std::vector<PointHeader> headers() const;
@@ -156,14 +156,14 @@ class PointSource : public PointStream {
   }
 
  private:
-  PointSource(FileSystem& files, const PointSourceOptions& options, HeaderSurvey survey,
-              std::string viewer);
+  JoinedInputs(FileSystem& files, const JoinedInputsOptions& options, HeaderSurvey survey,
+               std::string viewer);
 
   [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
   void thin_inputs();
 
-  PointSourceOptions options_;
+  JoinedInputsOptions options_;
   SourceFacts facts_;
   SourceCoordinates coordinates_;
   InputRegions regions_;
@@ -189,4 +189,4 @@ class PointSource : public PointStream {
   std::vector<std::string> untold_;
 };
 
-}  // namespace spillway::detail
+}  // namespace spillway::stream

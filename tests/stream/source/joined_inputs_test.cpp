@@ -1,7 +1,7 @@
 // Many inputs as one: filters, counts, the common lattice, coordinate systems, and what is said of
 // inputs that cannot be read.
 
-#include "stream/source/point_source.h"
+#include "stream/source/joined_inputs.h"
 #include "formats/points/create_points.h"
 
 #include <fmt/format.h>
@@ -21,13 +21,13 @@
 #include "tests/faulty_file_system.h"
 #include "tests/formats/points/las/las_file.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
+using test::FaultyFileSystem;
+using test::LasFile;
 using ::testing::AllOf;
-using testing::FaultyFileSystem;
 using ::testing::HasSubstr;
-using testing::LasFile;
 using ::testing::Not;
 
 struct Everything {
@@ -39,11 +39,11 @@ struct Everything {
 
 class PointSourceTest : public ::testing::Test {
  protected:
-  Everything read(const std::vector<std::string>& paths, PointSourceOptions options = {}) {
+  Everything read(const std::vector<std::string>& paths, JoinedInputsOptions options = {}) {
     options.index = true;
     options.warn = [this](std::string_view text) { warnings_ += std::string(text) + "\n"; };
     options.detail = [this](std::string_view text) { details_ += std::string(text) + "\n"; };
-    PointSource source(files_, paths, options);
+    JoinedInputs source(files_, paths, options);
     Everything all;
     for (PointBlock block; source.read(block);) {
       for (const LatticePoint& point : block.points) {
@@ -57,10 +57,10 @@ class PointSourceTest : public ::testing::Test {
     return all;
   }
 
-  std::string error_of(const std::vector<std::string>& paths, PointSourceOptions options = {}) {
+  std::string error_of(const std::vector<std::string>& paths, JoinedInputsOptions options = {}) {
     try {
       read(paths, std::move(options));
-    } catch (const Error& error) {
+    } catch (const Failure& error) {
       return error.what();
     }
     return "no error";
@@ -84,7 +84,7 @@ class PointSourceTest : public ::testing::Test {
   static LasFile::Vlr epsg(std::uint16_t code) {
     std::string keys;
     for (const std::uint16_t value : {1, 1, 0, 1, 3072, 0, 1, static_cast<int>(code)}) {
-      keys += testing::bytes_of(value);
+      keys += test::bytes_of(value);
     }
     return {"LASF_Projection", 34735, keys};
   }
@@ -104,7 +104,7 @@ class PointSourceTest : public ::testing::Test {
 TEST_F(PointSourceTest, FiltersAndCountsThroughAllInputs) {
   files_.files["a.las"] = diagonal(100).bytes();
   files_.files["b.las"] = diagonal(100).bytes();
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.filter.every = 2;
   options.filter.classes = std::bitset<256>("101");
   options.filter.returns = ReturnFilter{.last = true};
@@ -130,40 +130,40 @@ TEST_F(PointSourceTest, TellsTheExtentInTheCoordinatesOfThePoints) {
   const std::string fine_path = on_disk("fine.las", fine);
   const std::string coarse_path = on_disk("coarse.las", coarse);
   const std::string empty_path = on_disk("empty.las", empty);
-  const PointSource one(disk(), {fine_path, empty_path}, {});
+  const JoinedInputs one(disk(), {fine_path, empty_path}, {});
   EXPECT_EQ(one.told_extent(), (Box<2>{{1000, 3000}, {2000, 4000}}));
   // Of 0.02 + 0.05 n the nearest to 10 and 20.
-  const PointSource two(disk(), {coarse_path}, {});
+  const JoinedInputs two(disk(), {coarse_path}, {});
   EXPECT_EQ(two.told_extent(), (Box<2>{{200, 600}, {400, 800}}));
-  const PointSource both(disk(), {fine_path, coarse_path}, {});
+  const JoinedInputs both(disk(), {fine_path, coarse_path}, {});
   ASSERT_TRUE(both.lattice());
   EXPECT_EQ(both.told_extent(), (Box<2>{{1000, 3000}, {2002, 4000}}));
-  EXPECT_EQ(PointSource(disk(), {empty_path}, {}).told_extent(), std::nullopt);
+  EXPECT_EQ(JoinedInputs(disk(), {empty_path}, {}).told_extent(), std::nullopt);
 }
 
 TEST_F(PointSourceTest, TellsNoExtentOfPointsThatAreFiltered) {
   const std::string path = on_disk("a.las", diagonal(100));
-  EXPECT_NE(PointSource(disk(), {path}, {}).told_extent(), std::nullopt);
+  EXPECT_NE(JoinedInputs(disk(), {path}, {}).told_extent(), std::nullopt);
   for (const PointFilter& filter :
        {PointFilter{.every = 2}, PointFilter{.classes = std::bitset<256>("1")},
         PointFilter{.bounds = Box<3>{{0, 0, 0}, {1e9, 1e9, 1e9}}}}) {
-    PointSourceOptions options;
+    JoinedInputsOptions options;
     options.filter = filter;
-    EXPECT_EQ(PointSource(disk(), {path}, options).told_extent(), std::nullopt);
+    EXPECT_EQ(JoinedInputs(disk(), {path}, options).told_extent(), std::nullopt);
   }
 }
 
 /// They might be smaller than the header tells, and there is no second look.
 TEST_F(PointSourceTest, TellsNoExtentOfPointsFromAPipe) {
   files_.files["pipe.las"] = diagonal(100).bytes();
-  PointSource source(files_, {"pipe.las"}, {});
+  JoinedInputs source(files_, {"pipe.las"}, {});
   EXPECT_EQ(source.told_extent(), std::nullopt);
   EXPECT_FALSE(source.read_again(true));
 }
 
 TEST_F(PointSourceTest, GivesAllPointsOnceMore) {
-  PointSource source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
-                     {.index = true});
+  JoinedInputs source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
+                      {.index = true});
   std::vector<std::vector<std::uint64_t>> indices(2);
   for (auto& index : indices) {
     for (PointBlock block; source.read(block);) {
@@ -181,8 +181,8 @@ TEST_F(PointSourceTest, GivesAllPointsOnceMore) {
 
 /// From the first input on, though another one was to come first; and boxes count no more.
 TEST_F(PointSourceTest, GivesAllPointsInTheInputsOrderAfterAFalseBox) {
-  PointSource source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
-                     {.index = true});
+  JoinedInputs source(disk(), {on_disk("a.las", diagonal(70)), on_disk("b.las", diagonal(100))},
+                      {.index = true});
   ASSERT_EQ(source.regions().size(), 2U);
   source.keep_to({.units = {1, 0}, .regions = {1, 0}});
   PointBlock block;
@@ -198,9 +198,9 @@ TEST_F(PointSourceTest, GivesAllPointsInTheInputsOrderAfterAFalseBox) {
 
 TEST_F(PointSourceTest, TellsNoRegionsOfPointsThatAreThinned) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.thinning = ThinningRequest{.cell = 0.5, .memory = 0, .scratch = scratch.get()};
-  EXPECT_TRUE(PointSource(disk(), {on_disk("a.las", diagonal(70))}, options).regions().empty());
+  EXPECT_TRUE(JoinedInputs(disk(), {on_disk("a.las", diagonal(70))}, options).regions().empty());
 }
 
 TEST_F(PointSourceTest, WhatIsKeptDoesNotDependOnThreads) {
@@ -208,7 +208,7 @@ TEST_F(PointSourceTest, WhatIsKeptDoesNotDependOnThreads) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   std::vector<Everything> runs;
   for (const unsigned threads : {1U, 4U}) {
-    PointSourceOptions options;
+    JoinedInputsOptions options;
     options.filter.every = 3;
     options.thinning = ThinningRequest{.cell = 0.5, .memory = 0, .scratch = scratch.get()};
     with_threads(threads, [&] { runs.push_back(read({"a.las"}, options)); });
@@ -220,12 +220,12 @@ TEST_F(PointSourceTest, WhatIsKeptDoesNotDependOnThreads) {
 
 TEST_F(PointSourceTest, ExpectsNoMoreThanFiltersLeave) {
   files_.files["a.las"] = diagonal(100).bytes();
-  PointSourceOptions options;
-  EXPECT_EQ(PointSource(files_, {"a.las"}, options).expected(), 100U);
-  EXPECT_EQ(PointSource(files_, {"a.las"}, options).count(), 100U);
+  JoinedInputsOptions options;
+  EXPECT_EQ(JoinedInputs(files_, {"a.las"}, options).expected(), 100U);
+  EXPECT_EQ(JoinedInputs(files_, {"a.las"}, options).count(), 100U);
   options.filter.every = 7;
-  EXPECT_EQ(PointSource(files_, {"a.las"}, options).expected(), 15U);
-  EXPECT_EQ(PointSource(files_, {"a.las"}, options).count(), std::nullopt);
+  EXPECT_EQ(JoinedInputs(files_, {"a.las"}, options).expected(), 15U);
+  EXPECT_EQ(JoinedInputs(files_, {"a.las"}, options).count(), std::nullopt);
 }
 
 TEST_F(PointSourceTest, WarnsByNameOfWhatComesToLightWhilePointsAreRead) {
@@ -240,10 +240,10 @@ TEST_F(PointSourceTest, CountsLostPointsOnceAndPromisesNoNumberOfPoints) {
   files_.files["a.las"] = diagonal(100).bytes();
   files_.files["b.las"] = diagonal(100).bytes();
   files_.truncate("a.las", 227 + 20 * 60 + 7);
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.reader.keep_withheld = options.reader.salvage = true;
-  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).count(), std::nullopt);
-  EXPECT_EQ(PointSource(files_, {"a.las", "b.las"}, options).expected(), 160U);
+  EXPECT_EQ(JoinedInputs(files_, {"a.las", "b.las"}, options).count(), std::nullopt);
+  EXPECT_EQ(JoinedInputs(files_, {"a.las", "b.las"}, options).expected(), 160U);
   for (const bool seekable : {true, false}) {
     files_.seekable = seekable;
     warnings_.clear();
@@ -261,7 +261,7 @@ TEST_F(PointSourceTest, CountsLostPointsOnceAndPromisesNoNumberOfPoints) {
 TEST_F(PointSourceTest, TextHasNoClassesAndIsNamed) {
   files_.files["a.las"] = diagonal(10).bytes();
   files_.files["b.txt"] = "0 0 0\n1 0 0\n";
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.filter.classes = std::bitset<256>().set();
   EXPECT_THAT(
       error_of({"a.las", "b.txt"}, options),
@@ -277,7 +277,7 @@ TEST_F(PointSourceTest, FineAndCoarseInputsComeOnOneLattice) {
   fine.offset = {500000.005, 4000000, 0};
   files_.files["coarse.las"] = diagonal(10).bytes();
   files_.files["fine.las"] = fine.bytes();
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.reader.keep_withheld = true;
   const Everything both = read({"coarse.las", "fine.las"}, options);
   EXPECT_TRUE(both.on_lattice);
@@ -308,7 +308,7 @@ TEST_F(PointSourceTest, DifferentCoordinateSystemsAreRefusedUnlessForced) {
   EXPECT_THAT(error_of({"here.las", "there.las"}),
               AllOf(HasSubstr("here.las"), HasSubstr("there.las"), HasSubstr("32632"),
                     HasSubstr("32633"), HasSubstr("take coordinates as they are")));
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.crs.force = true;
   EXPECT_EQ(read({"here.las", "there.las"}, options).points.size(), 18U);
   EXPECT_THAT(warnings_, HasSubstr("warning: there.las has the coordinate system"));
@@ -336,9 +336,9 @@ TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
   npy->write(std::vector<LatticePoint>{{200, 0, 0}}, {});
   npy->finish();
   files_.files["d.las"] = diagonal(2).bytes();
-  PointSourceOptions options;
+  JoinedInputsOptions options;
   options.index = true;
-  PointSource source(files_, {"a.las", "b.xyz", "c.npy", "d.las"}, options);
+  JoinedInputs source(files_, {"a.las", "b.xyz", "c.npy", "d.las"}, options);
   source.carry({.names = {"classification"}});
   std::vector<std::uint64_t> index;
   std::vector<std::size_t> attributes;
@@ -355,7 +355,7 @@ TEST_F(PointSourceTest, PiecesThatAreUsedAgainKeepNothingOfTheInputBefore) {
 TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock) {
   const auto put = [&](double last) {
     PointWriterOptions options;
-    options.lattice = Lattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}};
+    options.lattice = IntegerLattice{{0.01, 0.01, 0.01}, {0.25, 0, 0}};
     const auto writer = open_point_writer(files_, "a.spp", options);
     const std::vector<LatticePoint> points = {{0, 0, 0}, {5, 7, 0}, {last, 0, 0}};
     writer->write(points, {});
@@ -369,4 +369,4 @@ TEST_F(PointSourceTest, IntegersThatALatticeDoesNotKeepApartAreFoundInTheirBlock
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

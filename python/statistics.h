@@ -14,14 +14,14 @@ namespace spillway::python {
 
 class Run;
 
-/// The figures of a run under the names that `--stats` has.
-pybind11::dict figures_of(const Report& report, const Run& run);
-pybind11::dict figures_of(const PointCounts& counts);
+/// The statistics of a run under the names that `--stats` has.
+pybind11::dict statistics_of(const Report& report, const Run& run);
+pybind11::dict statistics_of(const PointCounts& counts);
 /// The path and the message of each.
-pybind11::list figures_of(const std::vector<SkippedFile>& files);
+pybind11::list statistics_of(const std::vector<SkippedFile>& files);
 
 /// As the JSON of `spillway info`: what says nothing is left out.
-pybind11::list figures_of(const std::vector<Attribute>& attributes);
+pybind11::list statistics_of(const std::vector<Attribute>& attributes);
 
 /// (lowest, highest corner), or None.
 pybind11::object extent_of(const std::optional<Extent>& extent);

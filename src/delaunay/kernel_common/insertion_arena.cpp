@@ -1,4 +1,4 @@
-#include "src/delaunay/kernel_common/kernel_arena.h"
+#include "src/delaunay/kernel_common/insertion_arena.h"
 
 #include <sys/mman.h>
 
@@ -11,7 +11,7 @@
 
 #include "src/runtime/run_memory.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{1} << 21;
@@ -19,43 +19,43 @@ constexpr std::size_t kFirstChunk = std::size_t{1} << 15;
 constexpr std::size_t kStandardChunk = 4 * kHugePage;
 constexpr std::size_t kAlignment = alignof(std::max_align_t);
 
-thread_local KernelArena* current_arena = nullptr;
+thread_local InsertionArena* current_arena = nullptr;
 
 }  // namespace
 
-struct KernelArena::Kept {
+struct InsertionArena::Kept {
   std::mutex mutex;
   std::vector<Chunk> chunks;  ///< guarded by `mutex`
 };
 
-KernelArena::KernelArena() {
+InsertionArena::InsertionArena() {
   assert(current_arena == nullptr);
   current_arena = this;
 }
 
-KernelArena::~KernelArena() {
+InsertionArena::~InsertionArena() {
   current_arena = nullptr;
-  const auto kept = KernelArena::kept();
+  const auto kept = InsertionArena::kept();
   const std::lock_guard lock(kept->mutex);
   std::move(kept_chunks_.begin(), kept_chunks_.end(), std::back_inserter(kept->chunks));
 }
 
-KernelArena& KernelArena::current() { return *current_arena; }
+InsertionArena& InsertionArena::current() { return *current_arena; }
 
-void KernelArena::Free::operator()(std::byte* chunk) const { std::free(chunk); }
+void InsertionArena::Free::operator()(std::byte* chunk) const { std::free(chunk); }
 
-auto KernelArena::kept() -> std::shared_ptr<Kept> { return RunMemory::current().get<Kept>(); }
+auto InsertionArena::kept() -> std::shared_ptr<Kept> { return RunMemory::current().get<Kept>(); }
 
-void KernelArena::release_kept_memory() {
-  const auto kept = KernelArena::kept();
+void InsertionArena::release_kept_memory() {
+  const auto kept = InsertionArena::kept();
   const std::lock_guard lock(kept->mutex);
   kept->chunks.clear();
 }
 
 /// Chunks that span huge pages ask for them; small base cases stay small.
-auto KernelArena::make_chunk(std::size_t bytes) -> Chunk {
+auto InsertionArena::make_chunk(std::size_t bytes) -> Chunk {
   if (bytes == kStandardChunk) {
-    const auto kept = KernelArena::kept();
+    const auto kept = InsertionArena::kept();
     const std::lock_guard lock(kept->mutex);
     if (!kept->chunks.empty()) {
       Chunk chunk = std::move(kept->chunks.back());
@@ -73,7 +73,7 @@ auto KernelArena::make_chunk(std::size_t bytes) -> Chunk {
 }
 
 /// Chunks double up to the standard size; only requests above it get larger ones.
-void* KernelArena::allocate(std::size_t bytes) {
+void* InsertionArena::allocate(std::size_t bytes) {
   bytes = (bytes + kAlignment - 1) / kAlignment * kAlignment;
   if (bytes > left_) {
     const std::size_t doubled =
@@ -89,4 +89,4 @@ void* KernelArena::allocate(std::size_t bytes) {
   return result;
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

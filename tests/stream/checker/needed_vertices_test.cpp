@@ -1,14 +1,14 @@
 // The checker's vertices that may still be needed: as few slots as there are, and no vertex that
 // has not come or comes no more.
 
-#include "stream/checker/open_vertices.h"
+#include "stream/checker/needed_vertices.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "src/error.h"
 
-namespace spillway::detail {
+namespace spillway::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -16,9 +16,9 @@ using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
 /// A block of new vertices at (first, 0), (first + 1, 0), ..., and what it imports and finalizes.
-MeshBlock block_of(std::size_t fresh, std::vector<std::uint64_t> imported,
-                   std::vector<std::uint32_t> finalized) {
-  MeshBlock block;
+MeshStreamBlock block_of(std::size_t fresh, std::vector<std::uint64_t> imported,
+                         std::vector<std::uint32_t> finalized) {
+  MeshStreamBlock block;
   block.vertices.resize(fresh);
   block.imported = std::move(imported);
   block.finalized = std::move(finalized);
@@ -30,7 +30,7 @@ struct Entered {
   std::vector<std::uint32_t> slots;
 };
 
-Entered enter(OpenVertices<2>& open, const MeshBlock& block) {
+Entered enter(NeededVertices<2>& open, const MeshStreamBlock& block) {
   Entered entered;
   for (std::size_t v = 0; v < block.vertices.size(); ++v) {
     entered.points.push_back({static_cast<double>(open.announced() + v), 0});
@@ -39,8 +39,8 @@ Entered enter(OpenVertices<2>& open, const MeshBlock& block) {
   return entered;
 }
 
-TEST(OpenVertices, HaveNumbersSlotsAndPoints) {
-  OpenVertices<2> open;
+TEST(NeededVertices, HaveNumbersSlotsAndPoints) {
+  NeededVertices<2> open;
   const Entered first = enter(open, block_of(3, {}, {}));
   EXPECT_EQ(open.announced(), 3U);
   const Entered second = enter(open, block_of(1, {2, 0}, {}));
@@ -51,8 +51,8 @@ TEST(OpenVertices, HaveNumbersSlotsAndPoints) {
   EXPECT_EQ(open.peak(), 4U);
 }
 
-TEST(OpenVertices, SlotsAreUsedAgainOnceTheyAreFree) {
-  OpenVertices<2> open;
+TEST(NeededVertices, SlotsAreUsedAgainOnceTheyAreFree) {
+  NeededVertices<2> open;
   for (int block = 0; block < 100; ++block) {
     const Entered entered = enter(open, block_of(2, {}, {0, 1}));
     for (const std::uint32_t slot : entered.slots) {
@@ -64,8 +64,8 @@ TEST(OpenVertices, SlotsAreUsedAgainOnceTheyAreFree) {
   EXPECT_EQ(open.peak(), 2U);
 }
 
-TEST(OpenVertices, AHeldOneStaysThoughItIsFinalized) {
-  OpenVertices<2> open;
+TEST(NeededVertices, AHeldOneStaysThoughItIsFinalized) {
+  NeededVertices<2> open;
   const Entered first = enter(open, block_of(1, {}, {0}));
   const std::uint32_t held = first.slots[0];
   open.hold(held);
@@ -78,8 +78,8 @@ TEST(OpenVertices, AHeldOneStaysThoughItIsFinalized) {
   EXPECT_EQ(enter(open, block_of(1, {}, {})).slots[0], held);
 }
 
-TEST(OpenVertices, ThoseThatAreNeverFinalizedAreFound) {
-  OpenVertices<2> open;
+TEST(NeededVertices, ThoseThatAreNeverFinalizedAreFound) {
+  NeededVertices<2> open;
   const Entered entered = enter(open, block_of(4, {}, {1, 3}));
   open.finalize(entered.slots[1]);
   open.finalize(entered.slots[3]);
@@ -91,22 +91,22 @@ TEST(OpenVertices, ThoseThatAreNeverFinalizedAreFound) {
 std::string error_of(const std::function<void()>& work) {
   try {
     work();
-  } catch (const Error& error) {
+  } catch (const Failure& error) {
     return error.what();
   }
   return "no error";
 }
 
-TEST(OpenVertices, RefuseAVertexThatHasNotComeOrComesNoMore) {
-  OpenVertices<2> open;
+TEST(NeededVertices, RefuseAVertexThatHasNotComeOrComesNoMore) {
+  NeededVertices<2> open;
   EXPECT_THAT(error_of([&] { enter(open, block_of(1, {9}, {})); }), HasSubstr("uses vertex 9"));
-  OpenVertices<2> other;
+  NeededVertices<2> other;
   enter(other, block_of(2, {}, {1}));
   EXPECT_THAT(error_of([&] { enter(other, block_of(1, {1}, {})); }), HasSubstr("uses vertex 1"));
 }
 
-TEST(OpenVertices, RefuseToFinalizeTwice) {
-  OpenVertices<2> open;
+TEST(NeededVertices, RefuseToFinalizeTwice) {
+  NeededVertices<2> open;
   const Entered entered = enter(open, block_of(6, {}, {}));
   open.finalize(entered.slots[5]);
   EXPECT_THAT(error_of([&] { open.finalize(entered.slots[5]); }),
@@ -114,4 +114,4 @@ TEST(OpenVertices, RefuseToFinalizeTwice) {
 }
 
 }  // namespace
-}  // namespace spillway::detail
+}  // namespace spillway::test

@@ -14,12 +14,12 @@
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/point.h"
 
-namespace spillway::detail {
+namespace spillway::delaunay {
 
 /// The regions of up to 64 simplices, which are held against boxes several at a time. Of each a bit
 /// stands in words that ask and answer.
 template <int D>
-class RegionBatch {
+class ConflictRegionBatch {
  public:
   static constexpr std::size_t kSize = SimplexBatch<D>::kSize;
   static_assert(kSize == 64);
@@ -65,7 +65,7 @@ class RegionBatch {
 
   /// ConflictRegion::may_meet() of those `asked` for.
   [[nodiscard]] std::uint64_t may_meet(const Box<D>& box, std::uint64_t asked) const {
-    std::uint64_t met = spillway::detail::may_meet<D>(balls_, box, asked & ~apart_bits_);
+    std::uint64_t met = spillway::geometry::may_meet<D>(balls_, box, asked & ~apart_bits_);
     if ((asked & apart_bits_) == 0) return met;
     for (const auto& [s, region] : apart_) {
       if ((asked >> s & 1) != 0 && region.may_meet(box)) met |= std::uint64_t{1} << s;
@@ -117,7 +117,8 @@ class RegionBatch {
     for (; asked != 0; asked &= asked - 1) {
       const int s = std::countr_zero(asked);
       const bool apart = (apart_bits_ >> s & 1) != 0;
-      if (apart ? region(s).may_meet(plate) : spillway::detail::may_meet<D>(balls_.at(s), plate)) {
+      if (apart ? region(s).may_meet(plate)
+                : spillway::geometry::may_meet<D>(balls_.at(s), plate)) {
         met |= std::uint64_t{1} << s;
       }
     }
@@ -141,11 +142,11 @@ class RegionBatch {
 };
 
 /// Calls visit(first, regions) for batches of `count` simplices, of which the first is `first`;
-/// `corners(s)` and `points` are as in RegionBatch::set().
+/// `corners(s)` and `points` are as in ConflictRegionBatch::set().
 template <int D, typename Corners, typename Visit>
 void for_each_region_batch(std::size_t count, const Corners& corners,
                            std::span<const Point<D>> points, const Visit& visit) {
-  RegionBatch<D> regions;
+  ConflictRegionBatch<D> regions;
   for (std::size_t first = 0; first < count; first += regions.kSize) {
     regions.set(
         std::min(count - first, regions.kSize), [&](std::size_t s) { return corners(first + s); },
@@ -160,7 +161,7 @@ template <int D, typename Corners, typename Visit>
 void for_each_region(std::size_t count, const Corners& corners, std::span<const Point<D>> points,
                      const Visit& visit) {
   for_each_region_batch<D>(count, corners, points,
-                           [&](std::size_t first, const RegionBatch<D>& regions) {
+                           [&](std::size_t first, const ConflictRegionBatch<D>& regions) {
                              const std::size_t end = std::min(count, first + regions.kSize);
                              for (std::size_t s = first; s < end; ++s) {
                                visit(s, regions.region(s - first));
@@ -168,4 +169,4 @@ void for_each_region(std::size_t count, const Corners& corners, std::span<const 
                            });
 }
 
-}  // namespace spillway::detail
+}  // namespace spillway::delaunay

@@ -1,0 +1,65 @@
+#pragma once
+
+// The rooms of the house as namespaces, from the ground up: a room uses the names of those below it
+// without saying whose they are. docs/architecture.md has the picture. A private header that
+// includes no other one includes this file.
+
+namespace spillway {
+
+namespace detail {}  // what public headers need and their users do not
+
+namespace runtime {
+using namespace detail;
+}
+namespace geometry {
+using namespace runtime;
+}
+namespace parallel {
+using namespace runtime;
+}
+namespace delaunay {
+using namespace geometry;
+using namespace parallel;
+}
+namespace library {
+using namespace delaunay;
+}
+namespace distributed {
+using namespace delaunay;
+}
+namespace generators {
+using namespace geometry;
+}
+namespace terrain {
+using namespace geometry;
+}
+namespace picture {
+using namespace terrain;
+using namespace parallel;
+}
+namespace formats {
+using namespace geometry;
+}
+namespace checker {
+using namespace formats;
+using namespace parallel;
+}
+namespace stream {
+using namespace checker;
+using namespace delaunay;
+using namespace generators;
+using namespace library;
+using namespace picture;
+}
+namespace ranks {
+using namespace stream;
+using namespace distributed;
+}
+namespace command {
+using namespace ranks;
+}
+namespace test {
+using namespace command;
+}
+
+}  // namespace spillway
