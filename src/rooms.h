@@ -6,7 +6,7 @@
 
 namespace spillway {
 
-namespace detail {}  // what public headers need and their users do not
+namespace detail {}  // namespace detail
 
 namespace runtime {
 using namespace detail;
@@ -20,7 +20,7 @@ using namespace runtime;
 namespace delaunay {
 using namespace geometry;
 using namespace parallel;
-}
+}  // namespace delaunay
 namespace library {
 using namespace delaunay;
 }
@@ -36,25 +36,25 @@ using namespace geometry;
 namespace picture {
 using namespace terrain;
 using namespace parallel;
-}
+}  // namespace picture
 namespace formats {
 using namespace geometry;
 }
 namespace checker {
 using namespace formats;
 using namespace parallel;
-}
+}  // namespace checker
 namespace stream {
 using namespace checker;
 using namespace delaunay;
 using namespace generators;
 using namespace library;
 using namespace picture;
-}
+}  // namespace stream
 namespace ranks {
 using namespace stream;
 using namespace distributed;
-}
+}  // namespace ranks
 namespace command {
 using namespace ranks;
 }
