@@ -443,6 +443,7 @@ def takes(kind: Any) -> Callable[[_Function], _Function]:
 
 _FORMER_NAMES = {
     "base_case": "leaf_points",
+    "distrust_headers": "trust_headers",
     "duplicates": "heights",
     "tile": "tile_points",
     "tmpdir": "scratch_folder",
@@ -450,10 +451,14 @@ _FORMER_NAMES = {
 
 
 def _with_present_names(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Options by the names they have now. Those of earlier versions go on working."""
-    named = {_FORMER_NAMES.get(name, name): value for name, value in given.items()}
-    if "distrust_headers" in named:
-        named["trust_headers"] = not named.pop("distrust_headers")
+    """Options by the names they have now. Those of earlier versions go on working. Raises TypeError
+    if one option is given by both."""
+    named: dict[str, Any] = {}
+    for name, value in given.items():
+        present = _FORMER_NAMES.get(name, name)
+        if present != name and present in given:
+            raise TypeError(f"{name} is the former name of {present}; give one of them")
+        named[present] = not value if name == "distrust_headers" else value
     return named
 
 

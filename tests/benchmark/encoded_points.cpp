@@ -28,8 +28,8 @@ struct Plan {
 };
 
 void encode(const std::string& path, const Plan& plan) {
-  const test::EncodedPoints points = test::read_points_to_encode(path);
-  const std::string bytes = plan.copc ? test::copc_bytes(points) : test::laz_bytes(points);
+  const EncodedPoints points = read_points_to_encode(path);
+  const std::string bytes = plan.copc ? copc_bytes(points) : laz_bytes(points);
   const std::filesystem::path name = std::filesystem::path(path).stem();
   const auto file = disk().create(std::filesystem::path(plan.folder) /
                                   (name.string() + (plan.copc ? ".copc.laz" : ".laz")));

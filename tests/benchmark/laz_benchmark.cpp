@@ -142,10 +142,10 @@ Chunks chunks_of(const std::string& file) {
 /// Decodes as a reader does, with one decoder for all chunks; gives the records of each chunk.
 std::vector<std::string> decode(const Chunks& chunks) {
   LazChunkDecoder decoder(chunks.format, LazDetail::kRecords);
-  const std::size_t length = test::record_length_of(chunks.format);
+  const std::size_t length = record_length_of(chunks.format);
   std::vector<std::string> records;
   for (const Chunks::Chunk& chunk : chunks.chunks) {
-    records.push_back(test::decode_laz_records(decoder, length, chunk.bytes, chunk.count));
+    records.push_back(decode_laz_records(decoder, length, chunk.bytes, chunk.count));
   }
   return records;
 }
@@ -191,7 +191,7 @@ void print_records_table(const Plan& plan) {
         median_speed_of(plan, chunks.points, [&] { encode(chunks.format, records); });
     fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} |\n",
                std::filesystem::path(file).filename().string(), chunks.points,
-               test::record_length_of(chunks.format), decoding, encoding,
+               record_length_of(chunks.format), decoding, encoding,
                static_cast<double>(bytes) / static_cast<double>(bytes_before));
   }
 }

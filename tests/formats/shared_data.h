@@ -15,9 +15,7 @@
 
 namespace spillway::test {
 
-inline std::filesystem::path shared_file(const char* name) {
-  return test::shared_data_folder() / name;
-}
+inline std::filesystem::path shared_file(const char* name) { return shared_data_folder() / name; }
 
 inline std::string content_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -14,8 +14,6 @@
 namespace spillway::test {
 namespace {
 
-using test::Group;
-using test::Hard;
 using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel;
 
@@ -60,7 +58,7 @@ class AgainstCgal {
  public:
   template <typename Kernel>
   static void compare(const Group<D>& group) {
-    auto simplex = test::simplex_of<D>(group);
+    auto simplex = simplex_of<D>(group);
     const Point<D>& query = group[D + 1];
     const int o = orientation<D>(simplex);
     ASSERT_EQ(o, (Oracle<Kernel, D>::orientation(simplex)));
@@ -77,9 +75,9 @@ TYPED_TEST_SUITE(PredicatesAgainstCgalTest, Dimensions);
 
 TYPED_TEST(PredicatesAgainstCgalTest, HardPointsGetTheSameAnswers) {
   constexpr int D = TypeParam::value;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    for (const Group<D>& group : test::hard_groups<D>(family, 1000, 11)) {
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    for (const Group<D>& group : hard_groups<D>(family, 1000, 11)) {
       AgainstCgal<D>::template compare<Exact>(group);
       AgainstCgal<D>::template compare<Filtered>(group);
       if (::testing::Test::HasFatalFailure()) return;

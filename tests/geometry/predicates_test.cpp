@@ -11,13 +11,6 @@
 namespace spillway::test {
 namespace {
 
-using test::Group;
-using test::Hard;
-using test::hard_groups;
-using test::kAllHard;
-using test::name_of;
-using test::simplex_of;
-
 constexpr std::size_t kGroups = 2000;
 
 template <typename Dimension>
@@ -97,7 +90,7 @@ TYPED_TEST(PredicatesTest, IntegerStageRefusesDifferencesThatAreRounded) {
 
 TYPED_TEST(PredicatesTest, IntegerStageDoesNotOverflowAtItsLimit) {
   constexpr int D = TypeParam::value;
-  test::Random random(4);
+  Random random(4);
   for (int trial = 0; trial < 500; ++trial) {
     std::array<Point<D>, D + 1> simplex{};
     Group<D> group{};

@@ -69,7 +69,7 @@ TEST(BoxTest, LongestAxisIsTheLowestAmongEquals) {
 
 TEST(LatticeTest, IntegersComeBackFromWorldCoordinates) {
   const IntegerLattice lattice{{0.01, 0.01, 0.001}, {637000.1, 4850000, -33.3}};
-  test::Random random(1);
+  Random random(1);
   for (int trial = 0; trial < 20000; ++trial) {
     const int axis = trial % 3;
     const auto integer = static_cast<double>(random.integer(-2147483648LL, 2147483647LL));
@@ -103,7 +103,7 @@ bool are_apart(const IntegerLattice& lattice, double lo, double hi) {
 }
 
 TEST(LatticeTest, WhatIsSaidToKeepIntegersApartDoes) {
-  test::Random random(7);
+  Random random(7);
   int kept = 0;
   int refused = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -150,17 +150,17 @@ TYPED_TEST_SUITE(CanonicalHashTest, Dimensions);
 
 TYPED_TEST(CanonicalHashTest, DependsNeitherOnSimplexNorVertexOrder) {
   constexpr int D = TypeParam::value;
-  const auto groups = test::hard_groups<D>(test::Hard::kUniform, 50, 2);
+  const auto groups = hard_groups<D>(Hard::kUniform, 50, 2);
   CanonicalHash<D> forwards;
   CanonicalHash<D> backwards;
   CanonicalHash<D> halves;
   CanonicalHash<D> second_half;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    forwards.add(test::simplex_of<D>(groups[i]));
-    auto simplex = test::simplex_of<D>(groups[groups.size() - 1 - i]);
+    forwards.add(simplex_of<D>(groups[i]));
+    auto simplex = simplex_of<D>(groups[groups.size() - 1 - i]);
     std::reverse(simplex.begin(), simplex.end());
     backwards.add(simplex);
-    (i < 20 ? halves : second_half).add(test::simplex_of<D>(groups[i]));
+    (i < 20 ? halves : second_half).add(simplex_of<D>(groups[i]));
   }
   halves.add(second_half);
   EXPECT_EQ(forwards.value(), backwards.value());
@@ -170,8 +170,8 @@ TYPED_TEST(CanonicalHashTest, DependsNeitherOnSimplexNorVertexOrder) {
 
 TYPED_TEST(CanonicalHashTest, ChangesWithOneBitOfOneCoordinate) {
   constexpr int D = TypeParam::value;
-  const auto groups = test::hard_groups<D>(test::Hard::kUniform, 1, 3);
-  auto simplex = test::simplex_of<D>(groups[0]);
+  const auto groups = hard_groups<D>(Hard::kUniform, 1, 3);
+  auto simplex = simplex_of<D>(groups[0]);
   CanonicalHash<D> before;
   before.add(simplex);
   simplex[1][D - 1] = std::nextafter(simplex[1][D - 1], 2.0);
@@ -215,8 +215,7 @@ TYPED_TEST(CanonicalHashTest, IsTheSumOfTheLibrarysHashes) {
 
 TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {
   constexpr int D = TypeParam::value;
-  const auto simplex =
-      test::simplex_of<D>(test::hard_groups<D>(test::Hard::kLidarLattice, 1, 4)[0]);
+  const auto simplex = simplex_of<D>(hard_groups<D>(Hard::kLidarLattice, 1, 4)[0]);
   std::set<std::uint64_t> seen{hash_of<D>({simplex})};
   for (int i = 0; i <= D; ++i) {
     for (int k = 0; k < D; ++k) {
@@ -233,8 +232,8 @@ TYPED_TEST(CanonicalHashTest, EveryBitOfEveryCoordinateCounts) {
 
 TYPED_TEST(CanonicalHashTest, ChangesWhenSimplicesExchangeCornersOrCoordinates) {
   constexpr int D = TypeParam::value;
-  for (const auto& group : test::hard_groups<D>(test::Hard::kUniform, 200, 5)) {
-    const auto first = test::simplex_of<D>(group);
+  for (const auto& group : hard_groups<D>(Hard::kUniform, 200, 5)) {
+    const auto first = simplex_of<D>(group);
     auto second = first;
     for (auto& corner : second) corner[0] += 10;
     const std::uint64_t before = hash_of<D>({first, second});
@@ -296,12 +295,12 @@ TYPED_TEST(CanonicalHashTest, FingerprintsOfVerticesMakeTheSameHash) {
   CanonicalHash<D> listed;
   std::vector<std::uint32_t> corners;
   std::vector<std::uint64_t> vertices;
-  for (const auto& group : test::hard_groups<D>(test::Hard::kSmallLattice, 100, 6)) {
-    for (const auto& corner : test::simplex_of<D>(group)) {
+  for (const auto& group : hard_groups<D>(Hard::kSmallLattice, 100, 6)) {
+    for (const auto& corner : simplex_of<D>(group)) {
       corners.push_back(static_cast<std::uint32_t>(vertices.size()));
       vertices.push_back(vertex_hash<D>(corner));
     }
-    one_by_one.add(test::simplex_of<D>(group));
+    one_by_one.add(simplex_of<D>(group));
   }
   listed.add(corners, vertices);
   EXPECT_EQ(listed.value(), one_by_one.value());

@@ -18,13 +18,11 @@
 namespace spillway::test {
 namespace {
 
-using test::Points;
-using test::random_points;
 using ::testing::HasSubstr;
 
 template <typename Dimension>
 class InMemoryFault : public ::testing::Test {};
-TYPED_TEST_SUITE(InMemoryFault, test::Dimensions, test::DimensionNames);
+TYPED_TEST_SUITE(InMemoryFault, Dimensions, DimensionNames);
 
 /// The code that triangulating throws; the text has to hold `text`.
 template <int D, class Index = std::int32_t>
@@ -180,7 +178,7 @@ TYPED_TEST(InMemoryFault, OneMeshAskedByManyThreads) {
 #if defined(__x86_64__)
 TYPED_TEST(InMemoryFault, ProgramsMayRoundAndFlushAsTheyLike) {
   constexpr int D = TypeParam::value;
-  Points<D> points = test::lattice_points<D>(60 / D / D, 7);
+  Points<D> points = lattice_points<D>(60 / D / D, 7);
   const Points<D> large = random_points<D>(D == 2 ? 70'000 : 140'000, 8);  // several threads
   for (auto& p : points) {
     for (double& c : p) c *= 0x1p-1074;

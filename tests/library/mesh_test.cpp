@@ -18,13 +18,9 @@
 namespace spillway::test {
 namespace {
 
-using test::point_sets;
-using test::Points;
-using test::PointSet;
-
 template <typename Dimension>
 class InMemoryMesh : public ::testing::Test {};
-TYPED_TEST_SUITE(InMemoryMesh, test::Dimensions, test::DimensionNames);
+TYPED_TEST_SUITE(InMemoryMesh, Dimensions, DimensionNames);
 
 static_assert(std::ranges::forward_range<Cells<2, std::int32_t>>);
 static_assert(std::ranges::sized_range<Cells<3, std::int64_t>>);
@@ -156,7 +152,6 @@ TYPED_TEST(InMemoryMesh, HashIsThatOfTheSetOfCells) {
 
 TYPED_TEST(InMemoryMesh, CircumcentresAreNearTheExactOnes) {
   constexpr int D = TypeParam::value;
-  using test::Rational;
   for (const auto& [name, points] : point_sets<D>()) {
     SCOPED_TRACE(name);
     const Delaunay<D> mesh(points);
@@ -167,7 +162,7 @@ TYPED_TEST(InMemoryMesh, CircumcentresAreNearTheExactOnes) {
       EXPECT_EQ(mesh.circumcentre(static_cast<std::int32_t>(c)), centres[c]);
       std::array<Point<D>, D + 1> corners;
       for (int i = 0; i <= D; ++i) corners[i] = points[mesh.cells()[c].vertices[i]];
-      const test::ExactSphere<D> exact(corners);
+      const ExactSphere<D> exact(corners);
       for (int k = 0; k < D; ++k) {
         const double ulp = std::max(std::abs(centres[c][k]) * 0x1p-52, 0x1p-1074);
         const Rational error = abs(exact.centre[k] - Rational(centres[c][k])) - Rational(ulp);
@@ -180,7 +175,7 @@ TYPED_TEST(InMemoryMesh, CircumcentresAreNearTheExactOnes) {
 
 TYPED_TEST(InMemoryMesh, PointsMayLieAsTheyDoInAProgram) {
   constexpr int D = TypeParam::value;
-  const Points<D> points = test::random_points<D>(300, 8);
+  const Points<D> points = random_points<D>(300, 8);
   const auto expected = copy_of(Delaunay<D>(points).cell_vertices());
 
   std::array<std::vector<double>, D> axes, backwards;
@@ -214,7 +209,7 @@ TYPED_TEST(InMemoryMesh, PointsMayLieAsTheyDoInAProgram) {
 TYPED_TEST(InMemoryMesh, ResultDependsNeitherOnThreadsNorOnTheTypeOfNumbers) {
   constexpr int D = TypeParam::value;
   // Several base cases, and several ranges of cells.
-  const Points<D> points = test::random_points<D>(D == 2 ? 300'000 : 140'000, 9);
+  const Points<D> points = random_points<D>(D == 2 ? 300'000 : 140'000, 9);
   const Delaunay<D> one(points, {.threads = 1});
   for (const unsigned threads : {2U, 4U}) {
     const Delaunay<D> other(points, {.threads = threads});
@@ -232,11 +227,11 @@ TYPED_TEST(InMemoryMesh, ResultDependsNeitherOnThreadsNorOnTheTypeOfNumbers) {
 
 TYPED_TEST(InMemoryMesh, MovesWithItsSpans) {
   constexpr int D = TypeParam::value;
-  Delaunay<D> mesh(test::random_points<D>(50, 1));
+  Delaunay<D> mesh(random_points<D>(50, 1));
   const auto vertices = mesh.cell_vertices();
   Delaunay<D> moved = std::move(mesh);
   EXPECT_EQ(moved.cell_vertices().data(), vertices.data());
-  mesh = Delaunay<D>(test::random_points<D>(60, 2));
+  mesh = Delaunay<D>(random_points<D>(60, 2));
   EXPECT_EQ(mesh.point_count(), 60);
 }
 

@@ -19,16 +19,12 @@
 namespace spillway::test {
 namespace {
 
-using test::places_around;
-using test::point_sets;
-using test::Points;
-
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <typename Dimension>
 class InMemoryQuery : public ::testing::Test {};
-TYPED_TEST_SUITE(InMemoryQuery, test::Dimensions, test::DimensionNames);
+TYPED_TEST_SUITE(InMemoryQuery, Dimensions, DimensionNames);
 
 template <int D>
 std::int32_t locate_slowly(const Delaunay<D>& mesh, const Point<D>& place) {
@@ -75,7 +71,7 @@ TYPED_TEST(InMemoryQuery, LocateFindsTheLowestCellThatHasThePlace) {
 
 TYPED_TEST(InMemoryQuery, InterpolatedValuesStayWithinThoseOfTheCorners) {
   constexpr int D = TypeParam::value;
-  const Points<D> points = test::random_points<D>(3'000, 21);
+  const Points<D> points = random_points<D>(3'000, 21);
   const Delaunay<D> mesh(points);
   const Points<D> places = places_around<D>(points, 20'000, 22);
   const auto cells = mesh.locate(places);
@@ -131,7 +127,7 @@ TYPED_TEST(InMemoryQuery, NearestVertexOfTheCentreOfACircleOfManyIsTheLowest) {
 
 TYPED_TEST(InMemoryQuery, ManyPlacesAreAnsweredAsEachAlone) {
   constexpr int D = TypeParam::value;
-  const Points<D> points = test::random_points<D>(20'000, 13);
+  const Points<D> points = random_points<D>(20'000, 13);
   const Points<D> places = places_around<D>(points, 9'000, 14);
   std::vector<double> values(points.size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 97);
@@ -159,7 +155,7 @@ TYPED_TEST(InMemoryQuery, ManyPlacesAreAnsweredAsEachAlone) {
 TYPED_TEST(InMemoryQuery, TheFirstQuestionsMayComeFromManyThreadsAtOnce) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t kThreads = 8;
-  const Points<D> points = test::random_points<D>(70'000, 17);
+  const Points<D> points = random_points<D>(70'000, 17);
   const Points<D> places = places_around<D>(points, 400, 18);
   const auto expected = Delaunay<D>(points).locate(places);
   const Delaunay<D> mesh(points);
@@ -184,7 +180,7 @@ TYPED_TEST(InMemoryQuery, TheFirstQuestionsMayComeFromManyThreadsAtOnce) {
 TYPED_TEST(InMemoryQuery, SearchesBeginNearThePlaceAlsoWherePointsTakeTurnsBetweenClusters) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t kClusters = StartTree<D, std::int32_t>::kSampled;
-  Points<D> points = test::random_points<D>(8'000, 19);
+  Points<D> points = random_points<D>(8'000, 19);
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i][0] += 100.0 * static_cast<double>(i % kClusters);
   }
@@ -202,7 +198,7 @@ TYPED_TEST(InMemoryQuery, SearchesBeginNearThePlaceAlsoWherePointsTakeTurnsBetwe
 
 TYPED_TEST(InMemoryQuery, PlacesThatAreNotFiniteAreNowhere) {
   constexpr int D = TypeParam::value;
-  const Points<D> points = test::random_points<D>(100, 15);
+  const Points<D> points = random_points<D>(100, 15);
   const Delaunay<D> mesh(points);
   const std::vector<double> values(points.size(), 1);
   for (const double bad : {kNan, kInfinity, -kInfinity}) {

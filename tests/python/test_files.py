@@ -350,6 +350,8 @@ class Options(unittest.TestCase):
         for options, file in ((now, "now.spm"), (before, "before.spm")):
             spillway.triangulate("points.las", file, **options)
         self.assertEqual(open("now.spm", "rb").read(), open("before.spm", "rb").read())
+        with self.assertRaisesRegex(TypeError, "tile is the former name of tile_points; give one"):
+            spillway.triangulate("points.las", "both.spm", tile_points=300, tile=200)
 
     def test_functions_have_the_options_of_the_command(self):
         # What a call of a program has besides, and what stands without dashes there.

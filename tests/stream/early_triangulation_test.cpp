@@ -21,8 +21,6 @@
 namespace spillway::test {
 namespace {
 
-using test::IndexedSimplices;
-using test::triangulated;
 using ::testing::ElementsAre;
 using ::testing::Gt;
 using ::testing::Lt;

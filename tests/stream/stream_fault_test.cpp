@@ -165,7 +165,7 @@ class StreamFault : public ::testing::TestWithParam<unsigned> {
     return message;
   }
 
-  test::FaultyFileSystem files_;
+  FaultyFileSystem files_;
   FaultyScratch scratch_;
   MemoryBudget budget_{kMemory};
 };
@@ -223,9 +223,9 @@ TEST_P(StreamFault, OfTheInputEndsTheRunWhileOthersSpill) {
   text = points_as_text(150'000);  // several blocks
   FailingWriter writer(FailingWriter::Way::kNever, 0);
   run(writer);
-  const int reads = files_.count(test::Call::kRead);
+  const int reads = files_.count(Call::kRead);
   for (const int n : {reads / 2, reads}) {
-    files_.fail(test::Call::kRead, n);
+    files_.fail(Call::kRead, n);
     EXPECT_EQ(error_of_run(), "injected fault");
   }
   text += "1 2 x\n";

@@ -14,10 +14,6 @@
 namespace spillway::test {
 namespace {
 
-using test::box_of;
-using test::square_points;
-using test::triangles_of;
-
 /// Calls `expect` for each pixel of each triangle.
 void for_all_pixels(
     const PixelGrid& grid, const std::vector<Triangle>& triangles,

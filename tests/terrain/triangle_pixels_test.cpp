@@ -12,11 +12,6 @@
 namespace spillway::test {
 namespace {
 
-using test::box_of;
-using test::edges_touched;
-using test::square_points;
-using test::triangles_of;
-
 double level(double /*x*/, double /*y*/) { return 0; }
 
 struct Visits {

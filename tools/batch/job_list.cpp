@@ -127,6 +127,10 @@ class ListReader {
     if (!object.is_object()) fail("\"options\" is not a table of names and values");
     for (const auto& [given_name, value] : object.members()) {
       const std::string name = present_name(given_name);
+      if (name != given_name && object.find(name) != nullptr) {
+        fail(
+            fmt::format("\"{}\" is the former name of \"{}\": give one of them", given_name, name));
+      }
       if (value.is_boolean()) {
         options.erase(name);
         if (value.boolean()) options[name] = {};

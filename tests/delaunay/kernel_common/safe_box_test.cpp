@@ -21,7 +21,6 @@ namespace {
 
 template <int D>
 using Points = std::vector<Point<D>>;
-using test::Random;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Count {
@@ -61,7 +60,7 @@ Count expect_true_claims(const Points<D>& points, const Box<D>& safe_box, std::s
     }
     std::array<Point<D>, D + 1> corners;
     for (int i = 0; i <= D; ++i) corners[i] = points[simplex.vertices[i]];
-    const bool inside = test::ExactSphere<D>(corners).inside(safe_box);
+    const bool inside = ExactSphere<D>(corners).inside(safe_box);
     count.inside += inside ? 1 : 0;
     count.claimed += claimed ? 1 : 0;
     EXPECT_TRUE(inside || !claimed);

@@ -37,7 +37,7 @@ class InputListTest : public ::testing::Test {
     return "no error";
   }
 
-  test::TemporaryFiles files_;
+  TemporaryFiles files_;
   std::string b_;
   std::string a_;
   std::string notes_;

@@ -11,10 +11,6 @@
 namespace spillway::test {
 namespace {
 
-using test::ExactSphere;
-using test::Hard;
-using test::Random;
-using test::Rational;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -78,10 +74,10 @@ TYPED_TEST_SUITE(CertifiedBallTest, Dimensions);
 
 TYPED_TEST(CertifiedBallTest, BoundsHoldAgainstRationalArithmetic) {
   constexpr int D = TypeParam::value;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    for (const auto& group : test::hard_groups<D>(family, 200, 21)) {
-      const auto simplex = test::simplex_of<D>(group);
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    for (const auto& group : hard_groups<D>(family, 200, 21)) {
+      const auto simplex = simplex_of<D>(group);
       const CertifiedBall<D> ball = certified_ball<D>(simplex);
       if (ball.error < kInfinity) expect_true_bounds<D>(simplex, ball);
     }
@@ -92,9 +88,9 @@ TYPED_TEST(CertifiedBallTest, BoundsOfManyAtOnceHoldAgainstRationalArithmetic) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t kSize = SimplexBatch<D>::kSize;
   std::size_t proofs = 0;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    const auto groups = test::hard_groups<D>(family, 4 * kSize, 22);
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    const auto groups = hard_groups<D>(family, 4 * kSize, 22);
     for (std::size_t begin = 0; begin < groups.size(); begin += kSize) {
       SimplexBatch<D> batch;
       for (std::size_t s = 0; s < kSize; ++s) {
@@ -105,7 +101,7 @@ TYPED_TEST(CertifiedBallTest, BoundsOfManyAtOnceHoldAgainstRationalArithmetic) {
       for (std::size_t s = 0; s < kSize; ++s) {
         if (balls.error[s] == kInfinity) continue;
         ++proofs;
-        expect_true_bounds<D>(test::simplex_of<D>(groups[begin + s]), balls.at(s));
+        expect_true_bounds<D>(simplex_of<D>(groups[begin + s]), balls.at(s));
       }
     }
   }
@@ -118,9 +114,9 @@ TYPED_TEST(CertifiedBallTest, ManyAtOnceMeetTheBoxesThatTheyMeetOneByOne) {
   Random random(24);
   std::uint64_t all_met = 0;
   std::uint64_t all_missed = 0;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    const auto groups = test::hard_groups<D>(family, kSize, 25);
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    const auto groups = hard_groups<D>(family, kSize, 25);
     SimplexBatch<D> batch;
     for (std::size_t s = 0; s < kSize; ++s) {
       batch.set(s, [&](int i) { return groups[s][i]; });
@@ -169,10 +165,10 @@ TYPED_TEST(CertifiedBallTest, FalseIsAProofForTouchingBoxes) {
   constexpr int D = TypeParam::value;
   Random random(22);
   std::size_t proofs = 0;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    for (const auto& group : test::hard_groups<D>(family, 150, 23)) {
-      const auto simplex = test::simplex_of<D>(group);
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    for (const auto& group : hard_groups<D>(family, 150, 23)) {
+      const auto simplex = simplex_of<D>(group);
       const CertifiedBall<D> ball = certified_ball<D>(simplex);
       if (ball.error == kInfinity) continue;
       const ExactSphere<D> exact(simplex);
@@ -189,8 +185,8 @@ TYPED_TEST(CertifiedBallTest, FalseIsAProofForTouchingBoxes) {
 
 TYPED_TEST(CertifiedBallTest, ItsOwnVerticesMayMeet) {
   constexpr int D = TypeParam::value;
-  for (const auto& group : test::hard_groups<D>(Hard::kCospherical, 500, 24)) {
-    const auto simplex = test::simplex_of<D>(group);
+  for (const auto& group : hard_groups<D>(Hard::kCospherical, 500, 24)) {
+    const auto simplex = simplex_of<D>(group);
     const CertifiedBall<D> ball = certified_ball<D>(simplex);
     for (const auto& vertex : simplex) EXPECT_TRUE(may_meet<D>(ball, box_of<D>(vertex, vertex)));
   }
@@ -278,10 +274,10 @@ TYPED_TEST(CertifiedBallTest, WellInsideIsProvedByRationalArithmetic) {
   constexpr int D = TypeParam::value;
   Random random(31);
   std::size_t proofs = 0;
-  for (const Hard family : test::kAllHard) {
-    SCOPED_TRACE(test::name_of(family));
-    for (const auto& group : test::hard_groups<D>(family, 60, 32)) {
-      const auto simplex = test::simplex_of<D>(group);
+  for (const Hard family : kAllHard) {
+    SCOPED_TRACE(name_of(family));
+    for (const auto& group : hard_groups<D>(family, 60, 32)) {
+      const auto simplex = simplex_of<D>(group);
       SimplexBatch<D> batch{};
       batch.set(7, [&](int i) { return simplex[i]; });
       for (const Box<D>& box : boxes_around<D>(certified_ball<D>(simplex), random)) {

@@ -16,15 +16,6 @@
 namespace spillway::test {
 namespace {
 
-using test::ExactSphere;
-using test::Group;
-using test::Hard;
-using test::hard_groups;
-using test::kAllHard;
-using test::name_of;
-using test::Rational;
-using test::simplex_of;
-
 template <typename Dimension>
 class ConstructionsTest : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
@@ -113,7 +104,7 @@ TYPED_TEST(ConstructionsTest, CircumcentreBeyondTheLargestDoubleIsInfinite) {
 
 TYPED_TEST(ConstructionsTest, BarycentricCoordinatesAreNearTheExactOnes) {
   constexpr int D = TypeParam::value;
-  test::Random random(24);
+  Random random(24);
   for (const Hard family : kAllHard) {
     SCOPED_TRACE(name_of(family));
     for (const Group<D>& group : hard_groups<D>(family, kGroups, 25)) {

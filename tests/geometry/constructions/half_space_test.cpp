@@ -11,9 +11,6 @@
 namespace spillway::test {
 namespace {
 
-using test::Hard;
-using test::Random;
-
 template <typename Dimension>
 class HalfSpaceTest : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
@@ -67,8 +64,8 @@ TYPED_TEST(HalfSpaceTest, MeetsABoxIfAnyOfItsPointsIsBeyond) {
   constexpr int D = TypeParam::value;
   Random random(27);
   int misses = 0;
-  for (const auto& group : test::hard_groups<D>(Hard::kSmallLattice, 2000, 28)) {
-    auto simplex = test::simplex_of<D>(group);
+  for (const auto& group : hard_groups<D>(Hard::kSmallLattice, 2000, 28)) {
+    auto simplex = simplex_of<D>(group);
     std::array<Point<D>, D> facet;
     std::copy_n(simplex.begin(), D, facet.begin());
     const Box<D> box = box_of<D>(group[D], group[D + 1]);

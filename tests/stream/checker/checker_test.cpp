@@ -18,11 +18,6 @@
 namespace spillway::test {
 namespace {
 
-using test::add_simplex;
-using test::find_simplex;
-using test::flip;
-using test::Random;
-using test::remove_simplex;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
@@ -247,7 +242,7 @@ TYPED_TEST(CheckerTest, RejectsADuplicateSimplexOnce) {
   constexpr int D = TypeParam::value;
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    const auto vertices = test::simplex_of<D>(mesh, find_simplex<D>(mesh, inner));
+    const auto vertices = simplex_of<D>(mesh, find_simplex<D>(mesh, inner));
     mesh.corners.insert(mesh.corners.end(), vertices.begin(), vertices.end());
     expect_fault(mesh, "has the same vertices as " + this->simplex_);
   }

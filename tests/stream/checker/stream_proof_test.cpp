@@ -18,7 +18,6 @@
 namespace spillway::test {
 namespace {
 
-using test::StreamInMemory;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
@@ -61,7 +60,7 @@ Mesh in_output_coordinates(Mesh mesh) {
 
 // A stream of the mesh that ends with its true totals.
 StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block) {
-  StreamInMemory stream = test::stream_of(mesh, simplices_in_block);
+  StreamInMemory stream = stream_of(mesh, simplices_in_block);
   const CheckReport whole = check_mesh(in_output_coordinates(mesh), {});
   stream.stream_totals.hull_facets = whole.hull_facets;
   stream.stream_totals.canonical_hash = whole.canonical_hash;
@@ -127,7 +126,7 @@ TYPED_TEST(StreamProofTest, AcceptsSimplicesInRandomOrder) {
 
 TYPED_TEST(StreamProofTest, ReportDoesNotDependOnThreads) {
   Mesh mesh = this->good_;
-  ASSERT_TRUE(test::flip<TypeParam::value>(mesh, false));
+  ASSERT_TRUE(flip<TypeParam::value>(mesh, false));
   mesh.vertices.push_back({0.5, 0.5, 0.5});
   CheckerOptions options;
   const CheckReport one = check(stream_of(mesh, 3), options);
@@ -143,7 +142,7 @@ TYPED_TEST(StreamProofTest, HoldsLittleMoreThanTheBorderOfASweep) {
   const std::uint64_t count = D == 2 ? 90000 : 27000;
   const Family family = D == 2 ? Family::kLattice : Family::kUniform;  // hulls of few facets
   Mesh mesh = triangulated<D>(GeneratorOptions{.family = family, .count = count, .dimension = D});
-  test::sort_along<D>(mesh, 0);
+  sort_along<D>(mesh, 0);
   const CheckReport report = check(stream_of(mesh, 100));
   EXPECT_EQ(report.fault_count, 0U);
   EXPECT_LT(report.peak_live_vertices, report.vertices / 4);
@@ -153,7 +152,7 @@ TYPED_TEST(StreamProofTest, HoldsLittleMoreThanTheBorderOfASweep) {
 
 TYPED_TEST(StreamProofTest, RejectsAFlippedEdge) {
   Mesh mesh = this->good_;
-  ASSERT_TRUE(test::flip<TypeParam::value>(mesh, false));
+  ASSERT_TRUE(flip<TypeParam::value>(mesh, false));
   expect_fault(mesh, "is not Delaunay");
   EXPECT_EQ(check(stream_of(mesh, 7)).other_ties, 0U);
   CheckerOptions any;
@@ -169,7 +168,7 @@ TYPED_TEST(StreamProofTest, RejectsATieBrokenTheOtherWayUnlessAnyDelaunayWillDo)
     for (double& c : point) c = static_cast<double>(random() % (D == 2 ? 25 : 8));
   }
   Mesh mesh = triangulated<D>(points);
-  ASSERT_TRUE(test::flip<D>(mesh, true));
+  ASSERT_TRUE(flip<D>(mesh, true));
   expect_fault(mesh, "as ties are broken");
   const CheckReport report = check(stream_of(mesh, 7));
   EXPECT_EQ(report.other_ties, report.fault_count);
@@ -182,7 +181,7 @@ TYPED_TEST(StreamProofTest, RejectsAMissingSimplexInsideAndAtTheBoundary) {
   constexpr int D = TypeParam::value;
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    test::remove_simplex<D>(mesh, test::find_simplex<D>(mesh, inner));
+    remove_simplex<D>(mesh, find_simplex<D>(mesh, inner));
     expect_fault(mesh, "the boundary is not convex");
   }
 }
@@ -199,8 +198,7 @@ TYPED_TEST(StreamProofTest, RejectsAVertexOffTheLattice) {
   Mesh mesh =
       triangulated<D>(GeneratorOptions{.family = Family::kLattice, .count = 400, .dimension = D});
   mesh.vertices[17][1] += 0.25;
-  EXPECT_THAT(check(test::stream_of(mesh, 5)).faults,
-              Contains(HasSubstr("is off the lattice: its y")));
+  EXPECT_THAT(check(stream_of(mesh, 5)).faults, Contains(HasSubstr("is off the lattice: its y")));
 }
 
 TYPED_TEST(StreamProofTest, RejectsADuplicateSimplexNextToItAndFarFromIt) {
@@ -211,8 +209,8 @@ TYPED_TEST(StreamProofTest, RejectsADuplicateSimplexNextToItAndFarFromIt) {
   };
   for (const bool inner : {true, false}) {
     Mesh mesh = this->good_;
-    const std::uint64_t s = test::find_simplex<D>(mesh, inner);
-    const auto vertices = test::simplex_of<D>(mesh, s);
+    const std::uint64_t s = find_simplex<D>(mesh, inner);
+    const auto vertices = simplex_of<D>(mesh, s);
     add(mesh, vertices, s * (D + 1));
     expect_fault(mesh, "has the same vertices as " + this->simplex_);
     Mesh far = this->good_;
@@ -259,7 +257,7 @@ TYPED_TEST(StreamProofTest, RejectsAVertexInNoSimplex) {
 TYPED_TEST(StreamProofTest, RejectsAStreamWithoutSimplices) {
   Mesh mesh;
   mesh.header.dimension = TypeParam::value;
-  EXPECT_THAT(check(test::stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
+  EXPECT_THAT(check(stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
 }
 
 TYPED_TEST(StreamProofTest, RejectsEveryWrongTotalAndAWrongHash) {

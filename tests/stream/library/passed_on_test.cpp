@@ -21,7 +21,6 @@
 namespace spillway::test {
 namespace {
 
-using test::shared_data_folder;
 using ::testing::HasSubstr;
 
 /// Hands a mesh on to another sink, and counts.

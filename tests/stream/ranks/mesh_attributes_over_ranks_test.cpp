@@ -14,8 +14,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 AttributeLayout coloured() {
   return AttributeLayout({{.name = "number", .type = NumberType::kInt32},
                           {.name = "red", .type = NumberType::kUint16},

@@ -41,7 +41,7 @@ void expect_one_mesh(const std::vector<Point<D>>& points, std::size_t files,
   const auto expected = expected_simplices<D>(points);
   if (expected.empty()) return;  // refused, by one rank: tested by the command
   std::vector<std::string> paths;
-  const distributed::Ranks& ranks = test::world();
+  const distributed::Ranks& ranks = world();
   if (ranks.rank() == 0) paths = write_shared_points<D>(points, files);
   ranks.barrier();
   const RankRunResult run = run_over_ranks<D>(paths, options);

@@ -19,7 +19,6 @@ namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::world;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;

@@ -19,8 +19,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 class RankCheckpointsTest : public ::testing::Test {
  protected:
   [[nodiscard]] std::string path() const {

@@ -23,8 +23,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 /// How many vertices each hundredth of x has.
 struct Columns {
   std::map<std::int64_t, std::uint64_t> counts;

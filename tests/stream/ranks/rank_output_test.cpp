@@ -36,7 +36,6 @@ namespace spillway::test {
 namespace {
 
 namespace fs = std::filesystem;
-using test::world;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

@@ -10,8 +10,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 void expect_one_mesh(const FamilyCase& family, std::uint64_t count, std::uint64_t seed,
                      std::size_t files, const EngineOptions& options) {
   SCOPED_TRACE(::testing::Message() << count << " points, seed " << seed);

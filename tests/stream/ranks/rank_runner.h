@@ -44,7 +44,7 @@ struct RankRunResult {
 template <int D>
 RankRunResult run_over_ranks(const std::vector<std::string>& paths, EngineOptions options,
                              std::uint64_t memory = std::uint64_t{1} << 30) {
-  const distributed::Ranks& ranks = test::world();
+  const distributed::Ranks& ranks = world();
   RankRunResult run{{}, KeepingWriter(D), carries_attributes(options)};
   options.asked.input_index = true;
   const auto source = open_shared_source(disk(), paths, {.dimension = D, .index = true}, ranks);
@@ -86,7 +86,7 @@ void append_simplices(const MergedSection& section,
 /// Collective.
 template <int D>
 WholeMesh<D> gather_mesh(const RankRunResult& run) {
-  const distributed::Ranks& ranks = test::world();
+  const distributed::Ranks& ranks = world();
   auto simplices = simplices_of<D>(run.own);
   std::vector<std::array<std::uint64_t, 2>> named;     // number in the whole stream, input index
   std::vector<std::array<std::uint64_t, 2>> imported;  // likewise, where it is used again

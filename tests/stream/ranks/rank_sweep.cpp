@@ -87,7 +87,7 @@ bool sweep(std::uint64_t first, std::uint64_t sets, std::size_t scale) {
 
 }  // namespace
 
-const distributed::Ranks& test::world() { return *job; }
+const distributed::Ranks& world() { return *job; }
 
 }  // namespace spillway::test
 

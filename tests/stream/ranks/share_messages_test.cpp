@@ -12,8 +12,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 constexpr PixelGrid kGrid{.west = 0, .north = 600, .resolution = 1, .columns = 700, .rows = 600};
 
 std::vector<Triangle> terrain() {

@@ -20,18 +20,18 @@ class SharedFolder {
  public:
   SharedFolder() {
     std::vector<std::byte> name;
-    if (test::world().rank() == 0) {
+    if (world().rank() == 0) {
       path_ = ::testing::TempDir() + "rank-output" + std::to_string(::getpid());
       std::filesystem::create_directory(path_);
       const auto bytes = as_bytes_of(path_);
       name.assign(bytes.begin(), bytes.end());
     }
-    test::world().broadcast(name, 0);
+    world().broadcast(name, 0);
     path_ = as_text(name);
   }
   ~SharedFolder() {
-    test::world().barrier();
-    if (test::world().rank() == 0) std::filesystem::remove_all(path_);
+    world().barrier();
+    if (world().rank() == 0) std::filesystem::remove_all(path_);
   }
   SharedFolder(const SharedFolder&) = delete;
   SharedFolder& operator=(const SharedFolder&) = delete;

@@ -34,7 +34,7 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
   std::vector<std::string> paths;
   for (std::size_t f = 0; f < files; ++f) {
     paths.push_back(folder / fmt::format("points{}.{}", f, format));
-    if (test::world().rank() != 0) continue;
+    if (world().rank() != 0) continue;
     const std::vector<LatticePoint> share(
         points.begin() + static_cast<std::ptrdiff_t>(points.size() * f / files),
         points.begin() + static_cast<std::ptrdiff_t>(points.size() * (f + 1) / files));
@@ -44,7 +44,7 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
     writer->write(share, {});
     writer->finish();
   }
-  test::world().barrier();
+  world().barrier();
   return paths;
 }
 
@@ -52,13 +52,13 @@ inline std::vector<std::string> write_inputs(const SharedFolder& folder,
 inline std::string write_text(const SharedFolder& folder, const std::vector<LatticePoint>& points,
                               const std::string& name) {
   const std::string path = folder / name;
-  if (test::world().rank() == 0) {
+  if (world().rank() == 0) {
     std::ofstream file(path);
     for (const LatticePoint& p : points) {
       file << fmt::format("{} {} {}\n", p[0], p[1], p[2]);
     }
   }
-  test::world().barrier();
+  world().barrier();
   return path;
 }
 

@@ -13,7 +13,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
 using ::testing::Each;
 using ::testing::Field;
 using ::testing::SizeIs;

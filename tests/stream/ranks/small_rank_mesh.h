@@ -35,19 +35,19 @@ inline std::uint64_t hash_of(const Corners& corners) {
 /// The block of this rank's tiles.
 inline MeshStreamBlock own_block() {
   MeshStreamBlock block;
-  for (const Point<2>& corner : triangle_of(test::world().rank())) {
+  for (const Point<2>& corner : triangle_of(world().rank())) {
     block.vertices.push_back(raised(corner));
   }
   block.corners = {0, 1, 2};
   block.finalized = {0, 1, 2};
-  const bool is_last = test::world().rank() + 1 == test::world().size();
+  const bool is_last = world().rank() + 1 == world().size();
   if (is_last) block.finalized = {2};  // the others come again
   return block;
 }
 
 /// The parts of the stream, and the merged one at rank 0.
 inline RankMesh small_rank_mesh() {
-  const int ranks = test::world().size();
+  const int ranks = world().size();
   const auto number = static_cast<std::uint32_t>(ranks);
   RankMesh mesh;
   for (int rank = 0; rank < ranks; ++rank) {
@@ -62,8 +62,8 @@ inline RankMesh small_rank_mesh() {
                            .first_vertex = 3 * std::uint64_t{number},
                            .vertices = 1,
                            .simplices = 1});
-  mesh.own_section = static_cast<std::uint32_t>(test::world().rank());
-  mesh.statistics.mesh.canonical_hash = hash_of(triangle_of(test::world().rank()));
+  mesh.own_section = static_cast<std::uint32_t>(world().rank());
+  mesh.statistics.mesh.canonical_hash = hash_of(triangle_of(world().rank()));
   mesh.totals.vertices = 3 * std::uint64_t{number} + 1;
   mesh.totals.points = mesh.totals.vertices;
   mesh.totals.simplices = std::uint64_t{number} + 1;
@@ -73,7 +73,7 @@ inline RankMesh small_rank_mesh() {
   for (int rank = 0; rank < ranks; ++rank) {
     mesh.totals.canonical_hash += hash_of(triangle_of(rank));
   }
-  if (test::world().rank() != 0) return mesh;
+  if (world().rank() != 0) return mesh;
   MergedSection& merged = mesh.merged.emplace_back();
   merged.section = number;
   merged.mesh.vertices = {raised(kMergedCorner)};

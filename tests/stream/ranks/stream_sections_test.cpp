@@ -16,7 +16,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 

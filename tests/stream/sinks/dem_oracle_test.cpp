@@ -19,12 +19,6 @@
 namespace spillway::test {
 namespace {
 
-using test::kAllProducts;
-using test::Random;
-using test::raster_of;
-using test::Rastered;
-using test::triangles_of;
-
 /// x and y in steps of 1 / kSteps, so that vertices and centres are whole numbers.
 constexpr int kSteps = 8;
 using Steps = std::array<std::int64_t, 2>;

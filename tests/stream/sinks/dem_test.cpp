@@ -18,14 +18,6 @@
 namespace spillway::test {
 namespace {
 
-using test::edges_touched;
-using test::kAllProducts;
-using test::raster_of;
-using test::Rastered;
-using test::square_points;
-using test::triangles_of;
-using test::with_heights;
-
 double rough(double x, double y) { return 50 * std::sin(x) * std::cos(2 * y) + x; }
 
 TEST(Dem, EveryPixelIsWhatThePlaneOfItsTriangleSays) {
@@ -204,7 +196,7 @@ bool gdal_takes_for_nodata(float value, float nodata) {
 }
 
 TEST(Dem, WhatWouldBeTakenForNodataIsMovedByAFewStepsOfAFloat) {
-  test::Random random(3);
+  Random random(3);
   std::vector<float> values = {7, -9999, 0.1F, 1e-44F, -1e-40F, 1, -1, 65536, 1e30F};
   for (int i = 0; i < 200; ++i) values.push_back(static_cast<float>(random.uniform(-1e4, 1e4)));
   const PixelGrid grid{0, 8, 1, 8, 8};
@@ -261,7 +253,7 @@ TEST(Dem, PixelsAreCountedOnceAndNoneBesideTheRaster) {
     const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
     Dem dem(options, std::nullopt, *scratch);
     dem.begin(PixelGrid{0, 0, 1, columns, rows});
-    test::KeepingRaster raster(dem.grid(), options.products.size());
+    KeepingRaster raster(dem.grid(), options.products.size());
     std::vector<std::uint64_t> counts;
     dem.write(raster, [&](std::uint64_t pixels) { counts.push_back(pixels); });
     EXPECT_TRUE(std::is_sorted(counts.begin(), counts.end()));

@@ -39,7 +39,7 @@ Mesh cubes(std::uint64_t count) {
 }
 
 void write(TetrahedronWriter& writer, const Mesh& mesh, std::size_t simplices_in_block) {
-  test::StreamInMemory stream = test::stream_of(mesh, simplices_in_block);
+  StreamInMemory stream = stream_of(mesh, simplices_in_block);
   for (MeshStreamBlock& block : stream.blocks) writer.write(std::move(block));
   writer.finish(stream.stream_totals);
 }

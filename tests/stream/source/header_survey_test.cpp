@@ -13,8 +13,6 @@
 namespace spillway::test {
 namespace {
 
-using test::FaultyFileSystem;
-using test::LasFile;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -99,7 +97,7 @@ TEST_F(HeaderSurveyTest, InputsWithoutHeightsAreRefusedInSpaceAndToldInThePlane)
 }
 
 TEST_F(HeaderSurveyTest, WhatOpensJustOnceKeepsItsReader) {
-  test::TemporaryFiles on_disk;
+  TemporaryFiles on_disk;
   const std::string path = on_disk.put("a.las", LasFile().bytes());
   options_.digests = true;
   const HeaderSurvey all = survey_headers(disk(), {path}, options_);
@@ -116,7 +114,7 @@ TEST_F(HeaderSurveyTest, WhatOpensJustOnceKeepsItsReader) {
 }
 
 TEST_F(HeaderSurveyTest, EveryNthRecordIsToldInPiecesOnlyWhereTheCountIsKnown) {
-  test::TemporaryFiles on_disk;
+  TemporaryFiles on_disk;
   const std::vector<std::string> paths = {on_disk.put("a.las", LasFile().bytes()),
                                           on_disk.put("b.txt", "0 0 0\n1 0 0\n")};
   EXPECT_EQ(survey_headers(disk(), paths, options_).facts.inputs[1].pieces, 1U);

@@ -24,8 +24,6 @@
 namespace spillway::test {
 namespace {
 
-using test::FaultyFileSystem;
-using test::LasFile;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -84,7 +82,7 @@ class PointSourceTest : public ::testing::Test {
   static LasFile::Vlr epsg(std::uint16_t code) {
     std::string keys;
     for (const std::uint16_t value : {1, 1, 0, 1, 3072, 0, 1, static_cast<int>(code)}) {
-      keys += test::bytes_of(value);
+      keys += bytes_of(value);
     }
     return {"LASF_Projection", 34735, keys};
   }

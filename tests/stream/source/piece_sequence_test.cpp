@@ -59,7 +59,7 @@ class PieceSequenceTest : public ::testing::Test {
     return all;
   }
 
-  test::TemporaryFiles files_;
+  TemporaryFiles files_;
   std::vector<std::string> paths_;
   SourceFacts facts_;
   std::string said_;
@@ -194,7 +194,7 @@ class ChangedInput : public PieceSequenceTest {
   }
 
   static std::string las(double scale, double offset = 0, std::int32_t x = 1) {
-    test::LasFile file;
+    LasFile file;
     file.scale = {scale, scale, scale};
     file.offset = {offset, 0, 0};
     file.records[0].x = x;

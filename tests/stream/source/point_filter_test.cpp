@@ -16,10 +16,6 @@
 namespace spillway::test {
 namespace {
 
-using test::flags_layout;
-using test::flags_of;
-using test::records_of;
-
 TEST(ReturnFilter, FirstLastAndSingle) {
   const ReturnFilter first{.first = true};
   const ReturnFilter last{.last = true};

@@ -58,7 +58,7 @@ TEST_F(SourceCrs, OneTextIsBelievedUntilAnOutputNeedsIt) {
 }
 
 TEST_F(SourceCrs, ThatCannotBeReadIsNoneWithAWarning) {
-  if (!test::with_gdal()) GTEST_SKIP() << "GDAL reads it";
+  if (!with_gdal()) GTEST_SKIP() << "GDAL reads it";
   add("a", kBroken);
   add("b", kBroken);
   find();
@@ -68,7 +68,7 @@ TEST_F(SourceCrs, ThatCannotBeReadIsNoneWithAWarning) {
 }
 
 TEST_F(SourceCrs, ThatCannotBeReadGivesWayToKeys) {
-  if (!test::with_gdal()) GTEST_SKIP() << "GDAL reads it";
+  if (!with_gdal()) GTEST_SKIP() << "GDAL reads it";
   add("a", kBroken, keys_of(25832, 0));
   find();
   EXPECT_EQ(settle(CrsNeed::kAll), "EPSG:25832");
@@ -76,7 +76,7 @@ TEST_F(SourceCrs, ThatCannotBeReadGivesWayToKeys) {
 }
 
 TEST_F(SourceCrs, BesideOthersIsReadAtOnce) {
-  if (!test::with_gdal()) GTEST_SKIP() << "GDAL compares them";
+  if (!with_gdal()) GTEST_SKIP() << "GDAL compares them";
   add("a", kBroken);
   add("b", "EPSG:25832");
   EXPECT_EQ(find(), "EPSG:25832");
@@ -87,7 +87,7 @@ TEST_F(SourceCrs, BesideOthersIsReadAtOnce) {
 }
 
 TEST_F(SourceCrs, HeightsOfKeysComeWithTheNeed) {
-  if (!test::with_gdal()) GTEST_SKIP() << "GDAL makes a system of them";
+  if (!with_gdal()) GTEST_SKIP() << "GDAL makes a system of them";
   add("a", "EPSG:25832", keys_of(25832, 5783));
   add("b", "EPSG:25832", keys_of(25832, 5783));
   EXPECT_EQ(find(), "EPSG:25832");
@@ -98,7 +98,7 @@ TEST_F(SourceCrs, HeightsOfKeysComeWithTheNeed) {
 }
 
 TEST_F(SourceCrs, TheGivenOneStandsWhateverCannotBeRead) {
-  if (!test::with_gdal()) GTEST_SKIP() << "GDAL compares them";
+  if (!with_gdal()) GTEST_SKIP() << "GDAL compares them";
   add("a", kBroken);
   add("b", "");
   EXPECT_EQ(find({.given = "EPSG:25832"}), "EPSG:25832");

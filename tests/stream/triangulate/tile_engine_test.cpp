@@ -17,9 +17,6 @@
 namespace spillway::test {
 namespace {
 
-using test::IndexedSimplices;
-using test::random_points;
-using test::triangulated;
 using ::testing::Each;
 using ::testing::Ge;
 using ::testing::IsEmpty;

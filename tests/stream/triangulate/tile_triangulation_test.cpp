@@ -18,9 +18,6 @@
 namespace spillway::test {
 namespace {
 
-using test::among;
-using test::random_points;
-using test::triangulated;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;

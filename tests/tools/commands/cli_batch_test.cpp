@@ -155,6 +155,11 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
   EXPECT_THAT(
       error_of_list("i.json", R"({"jobs": [{"in": "in/north.las", "to": ["ply", "ply"]}]})"),
       HasSubstr("the output ply appears twice"));
+  EXPECT_THAT(
+      error_of_list(
+          "j.json",
+          R"({"jobs": [{"in": "in/north.las", "options": {"tile": 9, "tile-points": 8}}]})"),
+      HasSubstr("\"tile\" is the former name of \"tile-points\": give one of them"));
 }
 
 TEST_F(Batch, NamesBothInputsWhoseFilesWouldHaveTheSameNames) {

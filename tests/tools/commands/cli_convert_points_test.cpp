@@ -113,7 +113,7 @@ TEST(ConvertPoints, KeepsAttributesAndTellsWhatItDrops) {
 
 /// A LAS 1.4 file of that point format, with extra bytes in its records.
 std::string las_of_format(int point_format, std::size_t extra_bytes) {
-  test::LasFile las = scattered_las(0, 5);
+  LasFile las = scattered_las(0, 5);
   las.minor = 4;
   las.point_format = point_format;
   las.extra_bytes = extra_bytes;

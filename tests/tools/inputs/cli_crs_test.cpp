@@ -28,16 +28,16 @@ using Keys = std::vector<std::array<std::uint16_t, 4>>;
 const Keys kGeocentricOfAGeographic = {{1025, 0, 1, 2}, {1024, 0, 1, 3}, {2048, 0, 1, 4326}};
 
 /// The record of these keys.
-test::LasFile::Vlr record_of(const Keys& keys) {
-  std::string directory = test::bytes_of(
-      std::array<std::uint16_t, 4>{1, 1, 0, static_cast<std::uint16_t>(keys.size())});
-  for (const auto& key : keys) directory += test::bytes_of(key);
+LasFile::Vlr record_of(const Keys& keys) {
+  std::string directory =
+      bytes_of(std::array<std::uint16_t, 4>{1, 1, 0, static_cast<std::uint16_t>(keys.size())});
+  for (const auto& key : keys) directory += bytes_of(key);
   return {"LASF_Projection", 34735, directory};
 }
 
 /// A LAS file with these records.
-std::string las_with_records(const std::vector<test::LasFile::Vlr>& records) {
-  test::LasFile las = scattered_las(0, 50);
+std::string las_with_records(const std::vector<LasFile::Vlr>& records) {
+  LasFile las = scattered_las(0, 50);
   las.vlrs = records;
   return las.bytes();
 }
@@ -45,8 +45,8 @@ std::string las_with_records(const std::vector<test::LasFile::Vlr>& records) {
 /// A LAS file with GeoTIFF keys.
 std::string las_with(const Keys& keys) { return las_with_records({record_of(keys)}); }
 
-const test::LasFile::Vlr kNoWkt = {"LASF_Projection", 2112, "''"};
-const test::LasFile::Vlr kBrokenWkt = {"LASF_Projection", 2112, "PROJCS[\"none such\",FOO[1]]"};
+const LasFile::Vlr kNoWkt = {"LASF_Projection", 2112, "''"};
+const LasFile::Vlr kBrokenWkt = {"LASF_Projection", 2112, "PROJCS[\"none such\",FOO[1]]"};
 
 template <typename T>
 T field(const std::string& bytes, std::size_t at) {
@@ -153,7 +153,7 @@ TEST(CoordinateSystems, OfAFileWithGeocentricKeysFitItsCopcVersion) {
       "UNIT[\"metre\",1],AXIS[\"Geocentric X\",OTHER],AXIS[\"Geocentric Y\",OTHER],"
       "AXIS[\"Geocentric Z\",NORTH]]";
   const Workspace work;
-  test::LasFile las = scattered_las(50, 50);
+  LasFile las = scattered_las(50, 50);
   las.vlrs = {{"LASF_Projection", 2112, wkt}};
   work.write("wkt.las", las.bytes());
   work.write("keys.las", las_with(kGeocentricOfAGeographic));
@@ -254,7 +254,7 @@ TEST(CoordinateSystems, AreNotLookedAtWhereNoOutputNeedsThem) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   const Keys heights = {{1024, 0, 1, 1}, {3072, 0, 1, 25832}, {4096, 0, 1, 5783}};
-  const std::vector<std::vector<test::LasFile::Vlr>> files = {
+  const std::vector<std::vector<LasFile::Vlr>> files = {
       {kNoWkt},
       {kBrokenWkt},
       {kBrokenWkt, record_of({{1024, 0, 1, 1}, {3072, 0, 1, 32767}})},
@@ -271,7 +271,7 @@ TEST(CoordinateSystems, OfTheirOwnAreReadFromKeys) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const Workspace work;
   std::string numbers;
-  for (const double number : {9.0, 0.0, 0.9996, 500000.0, 0.0}) numbers += test::bytes_of(number);
+  for (const double number : {9.0, 0.0, 0.9996, 500000.0, 0.0}) numbers += bytes_of(number);
   work.write("in.las", las_with_records({record_of({{1024, 0, 1, 1},
                                                     {2048, 0, 1, 4258},
                                                     {3072, 0, 1, 32767},

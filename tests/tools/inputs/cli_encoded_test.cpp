@@ -11,11 +11,6 @@
 namespace spillway::test {
 namespace {
 
-using test::copc_bytes;
-using test::EncodedPoints;
-using test::laz_bytes;
-using test::read_points_to_encode;
-
 class Encoded : public ::testing::Test {
  protected:
   void generate(const std::string& options) const {

@@ -164,8 +164,8 @@ TEST_F(Inputs, CheckAndInfoTakeThemToo) {
 }
 
 TEST_F(Inputs, FineAndCoarseScalesMakeWhatOneFineFileMakes) {
-  test::LasFile fine = scattered_las(0, kPointsOfFile);
-  test::LasFile both = scattered_las(0, 2 * kPointsOfFile);
+  LasFile fine = scattered_las(0, kPointsOfFile);
+  LasFile both = scattered_las(0, 2 * kPointsOfFile);
   both.scale = fine.scale = {0.005, 0.005, 0.005};
   fine.offset = both.offset;
   for (auto& record : both.records) record = {2 * record.x, 2 * record.y, 2 * record.z};
@@ -200,8 +200,8 @@ TEST_F(Inputs, WhatNamesNothingIsAnError) {
 }
 
 TEST_F(Inputs, DifferentCoordinateSystemsNeedForce) {
-  test::LasFile a = scattered_las(0, kPointsOfFile);
-  test::LasFile b = scattered_las(kPointsOfFile, kPointsOfFile);
+  LasFile a = scattered_las(0, kPointsOfFile);
+  LasFile b = scattered_las(kPointsOfFile, kPointsOfFile);
   a.vlrs = {epsg_keys(32632)};
   b.vlrs = {epsg_keys(25832)};
   work_.write("a.las", a.bytes());
@@ -233,7 +233,7 @@ TEST(Help, IsShortWithoutArguments) {
 TEST(LasRecords, ThatAreNotThereAreSaidOnceByEveryCommand) {
   const Workspace work;
   std::string bytes = scattered_las(0, kPointsOfFile).bytes();
-  test::put(bytes, 100, std::uint32_t{3});
+  put(bytes, 100, std::uint32_t{3});
   work.write("in.las", bytes);
   const std::string notice = ": the header counts 3 variable length records, but none lies";
   for (const std::string command :

@@ -22,13 +22,13 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// The bytes of a LAS file with the bounds that belong to its points.
-std::string bytes_with_bounds(const test::LasFile& las) {
+std::string bytes_with_bounds(const LasFile& las) {
   std::array<double, 6> bounds{};
   for (std::size_t k = 0; k < 3; ++k) {
     bounds[2 * k] = -std::numeric_limits<double>::infinity();
     bounds[2 * k + 1] = std::numeric_limits<double>::infinity();
   }
-  for (const test::LasFile::Record& record : las.records) {
+  for (const LasFile::Record& record : las.records) {
     const std::array<double, 3> integers = {static_cast<double>(record.x),
                                             static_cast<double>(record.y),
                                             static_cast<double>(record.z)};
@@ -45,10 +45,10 @@ std::string bytes_with_bounds(const test::LasFile& las) {
 
 /// Points in a square of 10 units, with the bounds that belong to them.
 std::string las_at(const std::array<double, 3>& scale, const std::array<double, 3>& offset) {
-  test::LasFile las = scattered_las(0, 500);
+  LasFile las = scattered_las(0, 500);
   las.scale = scale;
   las.offset = offset;
-  for (test::LasFile::Record& record : las.records) {
+  for (LasFile::Record& record : las.records) {
     record.x %= 1000;
     record.y %= 1000;
   }
@@ -129,8 +129,8 @@ TEST(Lattices, OfPointsThatAFilterDropsDoNotMatter) {
   // Up to 2^46 the step of numbers is below the scale, and beyond it is above: only the last record
   // lies there, of a class of its own.
   const Workspace work;
-  test::LasFile las = scattered_las(0, 500);
-  for (test::LasFile::Record& record : las.records) {
+  LasFile las = scattered_las(0, 500);
+  for (LasFile::Record& record : las.records) {
     record.x %= 1000;
     record.y %= 1000;
   }

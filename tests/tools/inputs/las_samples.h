@@ -11,8 +11,8 @@ namespace spillway::test {
 
 /// A LAS file of `count` points, no two of equal x, y, on a lattice of 0.01, that belongs to a
 /// sequence of such files: record i has class (first + i) % 5 and is return 1 + i % 3 of 3.
-inline test::LasFile scattered_las(int first, int count) {
-  test::LasFile las;
+inline LasFile scattered_las(int first, int count) {
+  LasFile las;
   las.records.clear();
   for (int i = 0; i < count; ++i) {
     const std::uint32_t n = static_cast<std::uint32_t>(first + i);
@@ -28,10 +28,10 @@ inline test::LasFile scattered_las(int first, int count) {
 }
 
 /// The GeoTIFF keys of a projected coordinate system.
-inline test::LasFile::Vlr epsg_keys(std::uint16_t code) {
+inline LasFile::Vlr epsg_keys(std::uint16_t code) {
   std::string keys;
   for (const std::uint16_t value : std::vector<std::uint16_t>{1, 1, 0, 1, 3072, 0, 1, code}) {
-    keys += test::bytes_of(value);
+    keys += bytes_of(value);
   }
   return {"LASF_Projection", 34735, keys};
 }

@@ -103,7 +103,7 @@ std::size_t expect_selection(const std::string& file, const std::optional<Box<3>
 
 /// The nodes are the regions of the file: with their counts, and all of their points in their cube.
 void expect_regions(const std::string& file) {
-  test::TemporaryFiles files;
+  TemporaryFiles files;
   const auto reader = open_point_reader(disk(), files.put("regions.copc.laz", file), {});
   const std::vector<PointRegion>& regions = reader->header().regions;
   ASSERT_EQ(regions.size(), reader->pieces());

@@ -488,7 +488,7 @@ INSTANTIATE_TEST_SUITE_P(All, LazDamage, ::testing::ValuesIn(small_files()),
 class SharedLazDamage : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SharedLazDamage, IsAnErrorOrPoints) {
-  const std::filesystem::path path = test::shared_data_folder() / GetParam();
+  const std::filesystem::path path = shared_data_folder() / GetParam();
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   std::ifstream stream(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(stream), {});

@@ -11,8 +11,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 TEST(DoTogether, IsDoneOnceByEachRank) {
   std::uint64_t steps = 0;
   run_collective_step(world(), [&steps] { ++steps; });

@@ -14,8 +14,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 /// A table and what it needs.
 struct Table {
   explicit Table(const std::vector<std::string>& paths, const JoinedInputsOptions& options = {})

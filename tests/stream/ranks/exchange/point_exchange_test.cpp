@@ -15,8 +15,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
-
 /// Points on their way from inputs to ranks.
 struct Road {
   explicit Road(const std::vector<std::string>& paths)

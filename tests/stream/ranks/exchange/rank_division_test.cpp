@@ -16,7 +16,6 @@
 namespace spillway::test {
 namespace {
 
-using test::world;
 using ::testing::ElementsAre;
 
 RankDivision divide(const std::vector<std::string>& paths, int dimension,
