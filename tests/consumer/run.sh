@@ -148,7 +148,7 @@ case $what in
     fi
     grep -q "there is nothing to build" "$work/log" || { cat "$work/log"; fail "is not refused"; }
     echo '#include "src/geometry/predicates.h"' >"$work/fast.cpp"
-    if "$CXX" -std=c++20 -ffast-math -I"$here/../.." -fsyntax-only "$work/fast.cpp" 2>"$work/log"; then
+    if "$CXX" -std=c++20 -ffast-math -I"$here/../.." -I"$here/../../include" -fsyntax-only "$work/fast.cpp" 2>"$work/log"; then
       fail "is compiled"
     fi
     grep -q "exact only without -ffast-math" "$work/log" || { cat "$work/log"; fail "is not refused"; }

@@ -60,7 +60,7 @@ Mesh in_output_coordinates(Mesh mesh) {
 
 // A stream of the mesh that ends with its true totals.
 StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block) {
-  StreamInMemory stream = stream_of(mesh, simplices_in_block);
+  StreamInMemory stream = test::stream_of(mesh, simplices_in_block);
   const CheckReport whole = check_mesh(in_output_coordinates(mesh), {});
   stream.stream_totals.hull_facets = whole.hull_facets;
   stream.stream_totals.canonical_hash = whole.canonical_hash;
@@ -198,7 +198,8 @@ TYPED_TEST(StreamProofTest, RejectsAVertexOffTheLattice) {
   Mesh mesh =
       triangulated<D>(GeneratorOptions{.family = Family::kLattice, .count = 400, .dimension = D});
   mesh.vertices[17][1] += 0.25;
-  EXPECT_THAT(check(stream_of(mesh, 5)).faults, Contains(HasSubstr("is off the lattice: its y")));
+  EXPECT_THAT(check(test::stream_of(mesh, 5)).faults,
+              Contains(HasSubstr("is off the lattice: its y")));
 }
 
 TYPED_TEST(StreamProofTest, RejectsADuplicateSimplexNextToItAndFarFromIt) {
@@ -257,7 +258,7 @@ TYPED_TEST(StreamProofTest, RejectsAVertexInNoSimplex) {
 TYPED_TEST(StreamProofTest, RejectsAStreamWithoutSimplices) {
   Mesh mesh;
   mesh.header.dimension = TypeParam::value;
-  EXPECT_THAT(check(stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
+  EXPECT_THAT(check(test::stream_of(mesh, 10)).faults, Contains(HasSubstr("the mesh has no ")));
 }
 
 TYPED_TEST(StreamProofTest, RejectsEveryWrongTotalAndAWrongHash) {

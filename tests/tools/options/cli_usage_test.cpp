@@ -361,7 +361,7 @@ TEST(Manual, HasEverySubcommandAndOption) {
   const std::string manual = work.succeed("spillway manual");
   EXPECT_THAT(manual, StartsWith(".TH SPILLWAY 1"));
   for (const char* text :
-       {"triangulate", "generate", "\\-\\-duplicates", "\\-\\-any\\-delaunay", ".SH EXIT STATUS"}) {
+       {"triangulate", "generate", "\\-\\-heights", "\\-\\-any\\-delaunay", ".SH EXIT STATUS"}) {
     EXPECT_THAT(manual, HasSubstr(text));
   }
 }
