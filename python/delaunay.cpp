@@ -126,8 +126,14 @@ void bind_mesh(py::module_& module, const char* name) {
 void bind_delaunay(py::module_& module) {
   bind_mesh<2, std::int32_t>(module, "Mesh2");
   bind_mesh<3, std::int32_t>(module, "Mesh3");
+  bind_mesh<4, std::int32_t>(module, "Mesh4");
+  bind_mesh<5, std::int32_t>(module, "Mesh5");
+  bind_mesh<6, std::int32_t>(module, "Mesh6");
   bind_mesh<2, std::int64_t>(module, "WideMesh2");
   bind_mesh<3, std::int64_t>(module, "WideMesh3");
+  bind_mesh<4, std::int64_t>(module, "WideMesh4");
+  bind_mesh<5, std::int64_t>(module, "WideMesh5");
+  bind_mesh<6, std::int64_t>(module, "WideMesh6");
 }
 
 }  // namespace spillway::python

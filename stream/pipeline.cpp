@@ -7,6 +7,7 @@
 
 #include "src/delaunay/base_case/base_case.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/lattice_check.h"
 #include "src/parallel/parallel.h"
 #include "stream/plan/memory_plan.h"
@@ -258,7 +259,9 @@ void refuse_empty_mesh(const RunStatistics& statistics, const std::optional<doub
                 ErrorCode::kDegenerateInput);
 }
 
-template RunStatistics triangulate_stream<2>(PointStream&, BlockSink&, const RunSetup&);
-template RunStatistics triangulate_stream<3>(PointStream&, BlockSink&, const RunSetup&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template RunStatistics triangulate_stream<D>(PointStream&, BlockSink&, const RunSetup&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

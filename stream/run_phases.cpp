@@ -1,5 +1,7 @@
 #include "stream/run_phases.h"
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::stream {
 
 template <int D>
@@ -30,7 +32,8 @@ void RunPhases<D>::begin(RunPhase next) {
   if (saves_before(next)) engine_.save();
 }
 
-template class RunPhases<2>;
-template class RunPhases<3>;
+#define SPILLWAY_INSTANTIATE(D) template class RunPhases<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -1,5 +1,5 @@
 #pragma once
-// Delaunay triangulations of points in memory, in the plane and in space.
+// Delaunay triangulations of points in memory, in two to six dimensions.
 
 #include <spillway/cells.h>
 #include <spillway/error.h>
@@ -38,14 +38,15 @@ struct Duplicate {
   bool operator==(const Duplicate&) const = default;
 };
 
-/// The Delaunay triangulation of points in the plane (D = 2, cells are triangles) or in space
-/// (D = 3, cells are tetrahedra).
+/// The Delaunay triangulation of points in the plane (D = 2, cells are triangles), in space (D = 3,
+/// cells are tetrahedra) or in four to six dimensions (cells are simplices of D+1 vertices). A point
+/// that lies among others evenly has about 2, 7, 32, 190 or 1,300 cells; memory is needed for all.
 ///
 /// It is exact: no circumsphere of a cell has a point inside, without any tolerance. Where more
 /// than D+1 points lie on one sphere, and no other rule says which way to cut, symbolic
 /// perturbation decides (Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay
 /// 3D triangulations", 2011), so there is one result for every set of points: the one that CGAL
-/// computes.
+/// computes in two and three dimensions.
 ///
 /// Vertices are the points under their numbers in the input, from 0. Of equal points the first is a
 /// vertex, the others are `duplicates()`. Cells are numbered from 0, always in the same way for the
@@ -60,8 +61,8 @@ class Delaunay {
   /// Triangulates the points, of which a copy is kept. Throws Error:
   ///   kInvalidArgument  a coordinate is infinite or not a number (the text has the point's
   ///                     number), or there are more than 4,096 threads
-  ///   kDegenerateInput  there are no points, or all lie on one line (D = 3: one plane), as fewer
-  ///                     than D+1 do
+  ///   kDegenerateInput  there are no points, or all lie on one line (D = 3: one plane; in general
+  ///                     one hyperplane), as fewer than D+1 do
   ///   kTooLarge         more points or cells than an Index can number, or more than 4,294,967,293
   ///                     points
   ///   kInterrupted      options.stop asked for it
@@ -74,14 +75,15 @@ class Delaunay {
   [[nodiscard]] std::size_t point_count() const;
   /// Number of distinct points.
   [[nodiscard]] std::size_t vertex_count() const;
-  /// Number of triangles or tetrahedra; at least 1.
+  /// Number of triangles, tetrahedra or simplices; at least 1.
   [[nodiscard]] std::size_t cell_count() const;
 
   /// The points in the order of the input. Shape: point_count().
   [[nodiscard]] std::span<const Point<D>> points() const;
 
   /// The cells' vertices: those of cell c are the D+1 from c * (D+1) on, positively oriented: a
-  /// triangle's run counter-clockwise; of a tetrahedron the first three do, seen from the last.
+  /// triangle's run counter-clockwise; of a tetrahedron the first three do, seen from the last; in
+  /// general the determinant of the edges from the first vertex to the others is positive.
   /// Shape: cell_count() * (D+1).
   [[nodiscard]] std::span<const Index> cell_vertices() const;
 
@@ -93,7 +95,8 @@ class Delaunay {
   [[nodiscard]] Cells<D, Index> cells() const { return {cell_vertices(), cell_neighbours()}; }
 
   /// The facets of the convex hull, D vertices each, seen from outside: an edge has the mesh on its
-  /// left, a triangle runs counter-clockwise. Points that lie in the midst of a side of the hull
+  /// left, a triangle runs counter-clockwise; in general, with a point of the mesh that follows, the
+  /// orientation has the sign of (-1)^D. Points that lie in the midst of a side of the hull
   /// are vertices of facets, too. Shape: number of facets * D.
   [[nodiscard]] std::span<const Index> hull_facets() const;
 
@@ -146,7 +149,13 @@ class Delaunay {
 
 extern template class SPILLWAY_API Delaunay<2, std::int32_t>;
 extern template class SPILLWAY_API Delaunay<3, std::int32_t>;
+extern template class SPILLWAY_API Delaunay<4, std::int32_t>;
+extern template class SPILLWAY_API Delaunay<5, std::int32_t>;
+extern template class SPILLWAY_API Delaunay<6, std::int32_t>;
 extern template class SPILLWAY_API Delaunay<2, std::int64_t>;
 extern template class SPILLWAY_API Delaunay<3, std::int64_t>;
+extern template class SPILLWAY_API Delaunay<4, std::int64_t>;
+extern template class SPILLWAY_API Delaunay<5, std::int64_t>;
+extern template class SPILLWAY_API Delaunay<6, std::int64_t>;
 
 }  // namespace spillway

@@ -8,14 +8,20 @@
 
 namespace spillway {
 
+/// The dimensions of space that points may have.
+template <int D>
+concept Dimension = (D >= 2 && D <= 6);
+
 /// D coordinates. The library computes without units: any length will do, the same on all axes.
 template <int D>
-requires(D == 2 || D == 3) using Point = std::array<double, D>;
+requires Dimension<D>
+using Point = std::array<double, D>;
 
 /// Points as they lie in a program's memory: it refers to them, owns nothing, and is cheap to copy.
 /// What it refers to must stay where it is for as long as the view is used.
 template <int D>
-requires(D == 2 || D == 3) class PointView {
+requires Dimension<D>
+class PointView {
  public:
   /// No points.
   constexpr PointView() = default;

@@ -49,9 +49,20 @@ def _inverse(matrices: Floats) -> Floats:
         (a, b), (c, d) = np.moveaxis(matrices, 0, -1)
         rows = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
         return np.moveaxis(rows, -1, 0)
+    if matrices.shape[1] > 3:
+        return _general_inverse(matrices)
     a, b, c = np.moveaxis(matrices, 2, 0)
     rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
     inverse: Floats = rows / (a * rows[:, 0]).sum(axis=1)[:, None, None]
+    return inverse
+
+
+def _general_inverse(matrices: Floats) -> Floats:
+    """By elimination; not a number where a matrix is singular."""
+    inverse = np.full(matrices.shape, np.nan)
+    determinant = np.linalg.det(matrices)
+    regular = np.isfinite(determinant) & (determinant != 0)
+    inverse[regular] = np.linalg.inv(matrices[regular])
     return inverse
 
 

@@ -49,12 +49,13 @@ def as_floats(numbers: Any, name: str) -> Floats:
     return array.astype(np.float64)
 
 
-def as_rows(points: Any, name: str) -> Floats:
-    """Coordinates as rows of two or three."""
+def as_rows(points: Any, name: str, most: int = 3) -> Floats:
+    """Coordinates as rows of two to `most`."""
     array = as_floats(points, name)
-    if array.ndim != 2 or array.shape[1] not in (2, 3):
+    if array.ndim != 2 or not 2 <= array.shape[1] <= most:
+        numbers = "2 or 3" if most == 3 else f"2 to {most}"
         raise InvalidArgumentError(
-            f"{name} has the shape {array.shape}; give rows of 2 or 3 coordinates, as (n, 2)"
+            f"{name} has the shape {array.shape}; give rows of {numbers} coordinates, as (n, 2)"
         )
     return array
 
@@ -114,15 +115,17 @@ def _as_attribute(values: Any, name: str, count: int) -> NDArray[Any]:
 
 
 def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
-    """Coordinates as rows of two or three, and the heights that points in the plane carry."""
-    array = as_rows(points, "points")
-    if dim is not None and not is_dimension(dim):
-        raise InvalidArgumentError(f"dim is {dim!r}; give 2, 3 or None")
+    """Coordinates as rows of two to six, and the heights that points in the plane carry."""
+    array = as_rows(points, "points", 6)
+    if dim is not None and not (np.ndim(dim) == 0 and dim in range(2, 7)):
+        raise InvalidArgumentError(f"dim is {dim!r}; give 2 to 6 or None")
     columns = array.shape[1]
-    if dim == 3 and columns == 2:
-        raise InvalidArgumentError("dim is 3, but points has 2 columns; give 3 coordinates a point")
     if dim is None or dim == columns:
         return array, None
+    if (dim, columns) != (2, 3):
+        raise InvalidArgumentError(
+            f"dim is {dim}, but points has {columns} columns; give {dim} coordinates a point"
+        )
     z = np.array(array[:, 2])
     bad = np.flatnonzero(~np.isfinite(z))
     if bad.size > 0:

@@ -17,13 +17,13 @@ from .errors import InvalidArgumentError, TooLargeError
 
 _MOST_NARROW = 2**31 - 1
 # Simplices a point has about. Where that makes more than 32 bits number, numbers have 64.
-_SIMPLICES_A_POINT = {2: 2.0, 3: 6.8}
+_SIMPLICES_A_POINT = {2: 2.0, 3: 6.8, 4: 32.0, 5: 190.0, 6: 1300.0}
 # Places that are asked for at once; in between the interpreter sees to signals.
 _CHUNK = 1 << 20
 
 
 class Delaunay:
-    """The Delaunay triangulation of points in the plane or in space.
+    """The Delaunay triangulation of points in the plane, in space, or in four to six dimensions.
 
     It is exact: no circumsphere of a simplex has a point inside, without any tolerance. For every
     set of points there is one result, whatever the number of threads, also where more than
@@ -32,11 +32,11 @@ class Delaunay:
 
     Parameters
     ----------
-    points : array_like, shape (n, 2) or (n, 3)
+    points : array_like, shape (n, 2) to (n, 6)
         Coordinates, finite, of any unit, the same on all axes. Besides the copy that the library
         keeps, none is made of float64 in native byte order, whatever the strides; other numbers
         are converted.
-    dim : {None, 2, 3}, optional
+    dim : {None, 2, 3, 4, 5, 6}, optional
         Dimension of the triangulation. By default that of the points. With 2, points of three
         coordinates are triangulated in the plane and carry their z along.
     threads : int, optional
@@ -54,7 +54,8 @@ class Delaunay:
         The heights that points in the plane carry.
     simplices : ndarray of int32, shape (nsimplex, ndim + 1)
         The vertices of each simplex as numbers of points, positively oriented: triangles run
-        counter-clockwise; of a tetrahedron the first three do, seen from the last. Numbers are
+        counter-clockwise; of a tetrahedron the first three do, seen from the last; in general the
+        determinant of the edges from the first vertex to the others is positive. Numbers are
         int64 where there may be more than 2,147,483,647 of them.
     neighbors : ndarray of int32, shape (nsimplex, ndim + 1)
         The k-th neighbor lies opposite the k-th vertex; -1 outside of the hull.
@@ -73,7 +74,7 @@ class Delaunay:
     spillway.Error
         Also a ValueError, with the attribute `code`: ``"invalid argument"`` for coordinates that
         are not finite or arguments that cannot be used, ``"degenerate input"`` for points that span
-        no triangle (tetrahedron): none, too few, or all on one line (plane).
+        no triangle (tetrahedron, simplex): none, too few, or all on one line (plane, hyperplane).
     MemoryError
         If memory runs out.
     KeyboardInterrupt
@@ -109,7 +110,7 @@ class Delaunay:
         self.nsimplex = len(self.simplices)
 
     def __repr__(self) -> str:
-        cells = "triangles" if self.ndim == 2 else "tetrahedra"
+        cells = {2: "triangles", 3: "tetrahedra"}.get(self.ndim, "simplices")
         return f"<spillway.Delaunay: {self.nsimplex} {cells} of {self.npoints} points>"
 
     @functools.cached_property
@@ -262,7 +263,13 @@ class Delaunay:
         ------
         ImportError
             Without the package meshio.
+        InvalidArgumentError
+            For more than three dimensions, which no mesh format has.
         """
+        if self.ndim > 3:
+            raise InvalidArgumentError(
+                f"the mesh has {self.ndim} dimensions; meshio has cells of two and three"
+            )
         meshio = importlib.import_module("meshio")
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         return meshio.Mesh(points, [("triangle" if self.ndim == 2 else "tetra", self.simplices)])

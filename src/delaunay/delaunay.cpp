@@ -11,25 +11,14 @@
 #include "src/delaunay/border/find_border.h"
 #include "src/delaunay/border/merge.h"
 #include "src/delaunay/common/schedule.h"
+#include "src/delaunay/common/tuning.h"
 #include "src/delaunay/common/working_memory.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::delaunay {
 namespace {
-
-/// Smaller base cases lose more to merging, larger ones more to memory: measured in
-/// docs/performance-history.md.
-template <int D>
-constexpr std::size_t kGoodBaseCase = D == 2 ? 131'072 : 524'288;
-
-/// Points that are not enough for two base cases of this size stay together.
-template <int D>
-constexpr std::size_t kSmallestBaseCase = D == 2 ? 32'768 : 65'536;
-
-/// The same as the good size for a border's points, which it pays less to divide.
-template <int D>
-constexpr std::size_t kGoodBorderBaseCase = D == 2 ? 32'768 : 262'144;
 
 /// Base cases of this size divide `points` points into `parts` parts, a power of two, with room for
 /// cuts that miss the middle.
@@ -42,9 +31,10 @@ std::size_t leaf_points_for(std::size_t points, std::size_t parts) {
 /// The default: of the good size, or two, so that a second thread has something to do.
 template <int D>
 std::size_t default_leaf_points(std::size_t points) {
-  const std::size_t fewest = points >= 2 * kSmallestBaseCase<D> ? 2 : 1;
+  const std::size_t fewest = points >= 2 * Tuning<D>::kSmallestBaseCase ? 2 : 1;
   return leaf_points_for(
-      points, std::bit_floor(std::max(fewest, (points + kGoodBaseCase<D> / 2) / kGoodBaseCase<D>)));
+      points, std::bit_floor(std::max(
+                  fewest, (points + Tuning<D>::kGoodBaseCase / 2) / Tuning<D>::kGoodBaseCase)));
 }
 
 /// Base cases that a border is divided into, to have something to do for every thread.
@@ -60,10 +50,8 @@ std::size_t border_leaf_points(std::size_t points, std::size_t largest) {
 constexpr std::size_t kLargestUndivided = std::size_t{1} << 24;
 
 /// Of smaller sets that are divided, the longest axis is cut unseen: what a sample tells would cost
-/// more than it saves. Borders are hollow more often than other sets.
+/// more than it saves. Borders are hollow more often than other sets: Tuning.
 constexpr std::size_t kSmallestJudged = 32'768;
-template <int D>
-constexpr std::size_t kSmallestJudgedBorder = D == 2 ? 4'096 : 8'192;
 
 constexpr std::size_t kCopyGrain = std::size_t{1} << 16;
 
@@ -228,7 +216,7 @@ class Run {
     DivideAndConquerOptions options = options_;
     options.progress = nullptr;
     return Run(std::move(points), options, false)
-        .triangulate(leaf_points, kSmallestJudgedBorder<D>, task);
+        .triangulate(leaf_points, Tuning<D>::kSmallestJudgedBorder, task);
   }
 
   const DivideAndConquerOptions& options_;
@@ -273,10 +261,11 @@ Triangulation<D> delaunay_triangulation(std::span<const Point<D>> points,
 template <int D>
 Triangulation<D> border_delaunay(SlabArray<Point<D>> points, Kernel kernel, WorkLease* memory,
                                  Task& task) {
-  const std::size_t leaf_points = std::max<std::size_t>(points.size() / 4, kGoodBorderBaseCase<D>);
+  const std::size_t leaf_points =
+      std::max<std::size_t>(points.size() / 4, Tuning<D>::kGoodBorderBaseCase);
   const DivideAndConquerOptions options{.kernel = kernel, .memory = memory};
   return Run<D>(std::move(points), options, false)
-      .triangulate(leaf_points, kSmallestJudgedBorder<D>, task);
+      .triangulate(leaf_points, Tuning<D>::kSmallestJudgedBorder, task);
 }
 
 template <int D>
@@ -284,13 +273,12 @@ void recycle(Triangulation<D> used) {
   for (SimplexList<D>& list : used.lists) recycle<D>(std::move(list.simplices));
 }
 
-template Triangulation<2> border_delaunay<2>(SlabArray<Point<2>>, Kernel, WorkLease*, Task&);
-template Triangulation<3> border_delaunay<3>(SlabArray<Point<3>>, Kernel, WorkLease*, Task&);
-template Triangulation<2> delaunay_triangulation<2>(std::span<const Point<2>>,
-                                                    const DivideAndConquerOptions&);
-template Triangulation<3> delaunay_triangulation<3>(std::span<const Point<3>>,
-                                                    const DivideAndConquerOptions&);
-template void recycle<2>(Triangulation<2>);
-template void recycle<3>(Triangulation<3>);
+#define SPILLWAY_INSTANTIATE(D)                                                                 \
+  template Triangulation<D> border_delaunay<D>(SlabArray<Point<D>>, Kernel, WorkLease*, Task&); \
+  template Triangulation<D> delaunay_triangulation<D>(std::span<const Point<D>>,                \
+                                                      const DivideAndConquerOptions&);          \
+  template void recycle<D>(Triangulation<D>);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -13,6 +13,7 @@
 #include "src/distributed/growing_share.h"
 #include "src/distributed/merge_halves.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::distributed {
 namespace {
@@ -186,9 +187,10 @@ Share<D> delaunay_triangulation(std::vector<NamedPoint<D>> points, const Ranks& 
   return Run<D>(ranks, options).triangulate(std::move(points));
 }
 
-template Share<2> delaunay_triangulation<2>(std::vector<NamedPoint<2>>, const Ranks&,
-                                            const DistributedOptions<2>&);
-template Share<3> delaunay_triangulation<3>(std::vector<NamedPoint<3>>, const Ranks&,
-                                            const DistributedOptions<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                         \
+  template Share<D> delaunay_triangulation<D>(std::vector<NamedPoint<D>>, const Ranks&, \
+                                              const DistributedOptions<D>&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

@@ -7,6 +7,7 @@
 
 #include "src/delaunay/border/acceptance.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::distributed {
 namespace {
@@ -168,7 +169,8 @@ std::uint64_t GrowingShare<D>::bytes() const {
          (points_.size() - own_) * kForeignBytes;
 }
 
-template class GrowingShare<2>;
-template class GrowingShare<3>;
+#define SPILLWAY_INSTANTIATE(D) template class GrowingShare<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

@@ -8,6 +8,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/distributed/items.h"
 #include "src/geometry/box.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::distributed {
 namespace {
@@ -125,9 +126,10 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
   return points;
 }
 
-template std::vector<NamedPoint<2>> move_to_half(std::vector<NamedPoint<2>>, const Ranks&, int,
-                                                 const ItemLimits&);
-template std::vector<NamedPoint<3>> move_to_half(std::vector<NamedPoint<3>>, const Ranks&, int,
-                                                 const ItemLimits&);
+#define SPILLWAY_INSTANTIATE(D)                                                                   \
+  template std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>>, const Ranks&, int, \
+                                                   const ItemLimits&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::distributed {
 namespace {
 
@@ -137,9 +139,10 @@ HalvesMerged merge_halves(GrowingShare<D>& share, const Group& group, int middle
   return Merge<D>(share, group, middle, options).run(merge);
 }
 
-template HalvesMerged merge_halves<2>(GrowingShare<2>&, const Group&, int, unsigned,
-                                      const DistributedOptions<2>&);
-template HalvesMerged merge_halves<3>(GrowingShare<3>&, const Group&, int, unsigned,
-                                      const DistributedOptions<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                        \
+  template HalvesMerged merge_halves<D>(GrowingShare<D>&, const Group&, int, unsigned, \
+                                        const DistributedOptions<D>&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

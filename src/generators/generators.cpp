@@ -7,6 +7,7 @@
 
 #include "src/error.h"
 #include "src/generators/families.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::generators {
 namespace {
@@ -63,7 +64,9 @@ std::vector<Point<D>> generated_points(const GeneratorOptions& options) {
   return all;
 }
 
-template std::vector<Point<2>> generated_points<2>(const GeneratorOptions&);
-template std::vector<Point<3>> generated_points<3>(const GeneratorOptions&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template std::vector<Point<D>> generated_points<D>(const GeneratorOptions&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::generators

@@ -10,7 +10,7 @@ namespace spillway::geometry {
 
 /// A closed axis-parallel box. Default-constructed it is empty (lo > hi on every axis).
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 struct Box {
   Point<D> lo = filled(std::numeric_limits<double>::infinity());
   Point<D> hi = filled(-std::numeric_limits<double>::infinity());

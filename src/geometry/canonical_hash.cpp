@@ -6,6 +6,8 @@
 
 #include <bit>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::geometry {
 namespace {
 
@@ -21,7 +23,7 @@ std::uint64_t vertex_hash(Point<D> position) {
 }
 
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 void CanonicalHash<D>::add(const std::array<Point<D>, D + 1>& simplex) {
   std::uint64_t vertices = 0;
   for (const Point<D>& position : simplex) vertices += vertex_hash<D>(position);
@@ -29,7 +31,7 @@ void CanonicalHash<D>::add(const std::array<Point<D>, D + 1>& simplex) {
 }
 
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 void CanonicalHash<D>::add(std::span<const std::uint32_t> corners,
                            std::span<const std::uint64_t> vertices) {
   for (std::size_t s = 0; s < corners.size(); s += D + 1) {
@@ -47,9 +49,10 @@ std::string hash_to_hex(std::uint64_t hash) {
   return hex;
 }
 
-template std::uint64_t vertex_hash<2>(Point<2>);
-template std::uint64_t vertex_hash<3>(Point<3>);
-template class CanonicalHash<2>;
-template class CanonicalHash<3>;
+#define SPILLWAY_INSTANTIATE(D)                    \
+  template std::uint64_t vertex_hash<D>(Point<D>); \
+  template class CanonicalHash<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

@@ -20,7 +20,7 @@ std::uint64_t vertex_hash(Point<D> position);
 /// fingerprints. It depends neither on the order of simplices or vertices nor on orientation, so
 /// runs and formats can be compared by it.
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 class CanonicalHash {
  public:
   /// Adds one finite simplex, given by its output coordinates in any order.

@@ -1,6 +1,7 @@
 // The last stage of the predicates, apart from the others because big integers compile slowly.
 
 #include "src/geometry/big_integer.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicate_stages.h"
 
 namespace spillway::geometry::stages {
@@ -18,9 +19,10 @@ int exact(const Points<P>& points) {
   return sign(P::determinant(v));
 }
 
-template int exact<Orientation<2>>(const Points<Orientation<2>>&);
-template int exact<Orientation<3>>(const Points<Orientation<3>>&);
-template int exact<InSphere<2>>(const Points<InSphere<2>>&);
-template int exact<InSphere<3>>(const Points<InSphere<3>>&);
+#define SPILLWAY_INSTANTIATE(D)                                      \
+  template int exact<Orientation<D>>(const Points<Orientation<D>>&); \
+  template int exact<InSphere<D>>(const Points<InSphere<D>>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry::stages

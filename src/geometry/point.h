@@ -8,10 +8,6 @@
 
 namespace spillway::geometry {
 
-/// The dimensions that Spillway triangulates.
-template <int D>
-concept SupportedDimension = (D == 2 || D == 3);
-
 /// Number of a vertex within one in-memory triangulation.
 using VertexId = std::uint32_t;
 

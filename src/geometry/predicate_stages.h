@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -21,10 +22,33 @@ inline constexpr double kRoundoff = 0x1p-53;
 
 /// Largest coordinate differences between which filters are proved: within, no intermediate result
 /// overflows, and what underflow loses is negligible.
-inline constexpr double kSmallestSafe = 0x1p-150;
-inline constexpr double kLargestSafe = 0x1p150;
+template <int D>
+inline constexpr double kSmallestSafe = D <= 4 ? 0x1p-150 : 0x1p-120;
+template <int D>
+inline constexpr double kLargestSafe = 1 / kSmallestSafe<D>;
+
+constexpr std::int64_t factorial(int n) { return n <= 1 ? 1 : n * factorial(n - 1); }
+
+/// The largest power of two such that a polynomial of so many monomials, all of this degree in
+/// numbers that are no larger, fits 128 bits, whatever the order in which it is summed up.
+constexpr double largest_integer(int degree, std::int64_t monomials) {
+  const int bits = (127 - std::bit_width(static_cast<std::uint64_t>(monomials))) / degree;
+  return static_cast<double>(std::int64_t{1} << bits);
+}
+
+/// Roundings that a monomial of the orientation determinant goes through: those of its D
+/// differences, its products, and the sums of minors it is part of; one more is for the bound's.
+template <int D>
+inline constexpr int kOrientationRoundings = 2 * D - 1 + D*(D - 1) / 2 + 1;
 
 __extension__ using Int128 = __int128;
+
+template <std::size_t D>
+double product(const std::array<double, D>& factors) {
+  double result = factors[0] * factors[1];
+  for (std::size_t k = 2; k < D; ++k) result *= factors[k];
+  return result;
+}
 
 /// Orientation of points p0, ..., pD: differences are taken to p0.
 template <int D>
@@ -33,7 +57,7 @@ struct Orientation {
   static constexpr int kVectors = D;
   static constexpr int kOrigin = 0;
   /// Differences up to this size fit the determinant into 128 bits.
-  static constexpr double kLargestInteger = D == 2 ? 0x1p62 : 0x1p41;
+  static constexpr double kLargestInteger = largest_integer(D, factorial(D));
 
   template <typename T>
   static T determinant(const Vectors<D, D, T>& v) {
@@ -41,8 +65,7 @@ struct Orientation {
   }
   /// The filter's error bound, from the largest difference along each axis.
   static double error_bound(const std::array<double, D>& m) {
-    if constexpr (D == 2) return 2 * 5 * kRoundoff * (m[0] * m[1]);
-    return 6 * 9 * kRoundoff * (m[0] * m[1] * m[D - 1]);
+    return factorial(D) * kOrientationRoundings<D> * kRoundoff * product(m);
   }
 };
 
@@ -52,15 +75,16 @@ struct InSphere {
   static constexpr int kDimension = D;
   static constexpr int kVectors = D + 1;
   static constexpr int kOrigin = D + 1;
-  static constexpr double kLargestInteger = D == 2 ? 0x1p30 : 0x1p24;
+  static constexpr double kLargestInteger = largest_integer(D + 2, D* factorial(D + 1));
+  /// Besides those, a monomial has the squared length, the product with it, and the last sum.
+  static constexpr int kRoundings = kOrientationRoundings<D> + 2 * D + 3;
 
   template <typename T>
   static T determinant(const Vectors<D, D + 1, T>& v) {
     return in_sphere_determinant<D>(v);
   }
   static double error_bound(const std::array<double, D>& m) {
-    if constexpr (D == 2) return 6 * 12 * kRoundoff * (m[0] * m[1] * squared_length(m));
-    return 24 * 18 * kRoundoff * (m[0] * m[1] * m[D - 1] * squared_length(m));
+    return factorial(D + 1) * kRoundings * kRoundoff * (product(m) * squared_length(m));
   }
 };
 
@@ -92,7 +116,7 @@ std::optional<int> filtered(const Points<P>& points) {
     }
   }
   for (int k = 0; k < D; ++k) {
-    if (!(largest[k] >= kSmallestSafe && largest[k] <= kLargestSafe)) return std::nullopt;
+    if (!(largest[k] >= kSmallestSafe<D> && largest[k] <= kLargestSafe<D>)) return std::nullopt;
   }
   const double determinant = P::determinant(v);
   const double bound = P::error_bound(largest);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicate_stages.h"
 
 namespace spillway::geometry {
@@ -56,11 +57,11 @@ int in_sphere(const std::array<Point<D>, D + 1>& simplex, const Point<D>& p) {
   return side != 0 ? side : break_tie<D>(simplex, p);
 }
 
-template int orientation<2>(const std::array<Point<2>, 3>&);
-template int orientation<3>(const std::array<Point<3>, 4>&);
-template int side_of_sphere<2>(const std::array<Point<2>, 3>&, const Point<2>&);
-template int side_of_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
-template int in_sphere<2>(const std::array<Point<2>, 3>&, const Point<2>&);
-template int in_sphere<3>(const std::array<Point<3>, 4>&, const Point<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                        \
+  template int orientation<D>(const std::array<Point<D>, D + 1>&);                     \
+  template int side_of_sphere<D>(const std::array<Point<D>, D + 1>&, const Point<D>&); \
+  template int in_sphere<D>(const std::array<Point<D>, D + 1>&, const Point<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

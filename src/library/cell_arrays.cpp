@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::library {
@@ -132,9 +133,12 @@ CellArrays<Index> make_cell_arrays(const Triangulation<D>& triangulation,
   return Flattener<D, Index>(triangulation, numbers).flatten();
 }
 
-template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<2>&, const CellNumbers<2>&);
-template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<3>&, const CellNumbers<3>&);
-template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<2>&, const CellNumbers<2>&);
-template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<3>&, const CellNumbers<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                               \
+  template CellArrays<std::int32_t> make_cell_arrays(const Triangulation<D>&, \
+                                                     const CellNumbers<D>&);  \
+  template CellArrays<std::int64_t> make_cell_arrays(const Triangulation<D>&, \
+                                                     const CellNumbers<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

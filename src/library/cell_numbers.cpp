@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::library {
@@ -48,7 +49,8 @@ CellNumbers<D>::CellNumbers(const Triangulation<D>& triangulation) {
   }
 }
 
-template class CellNumbers<2>;
-template class CellNumbers<3>;
+#define SPILLWAY_INSTANTIATE(D) template class CellNumbers<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

@@ -11,6 +11,7 @@
 
 #include "src/delaunay/delaunay.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/library/cell_numbers.h"
 #include "src/library/query_order.h"
 #include "src/parallel/most_threads.h"
@@ -83,14 +84,17 @@ Triangulation<D> triangulate(std::span<const Point<D>> points, const DelaunayOpt
 /// Throws unless the points span D dimensions.
 void require_span(int dimension, int needed, std::size_t points) {
   if (dimension == needed) return;
-  const std::string cell = needed == 2 ? "triangle" : "tetrahedron";
+  const std::string cell = needed == 2   ? "triangle"
+                           : needed == 3 ? "tetrahedron"
+                                         : fmt::format("simplex of {} dimensions", needed);
   if (dimension < 0) {
     throw PublicError(ErrorCode::kDegenerateInput,
                       fmt::format("there are no points, so there is no {}", cell));
   }
-  const char* const where = dimension == 0   ? "at one place"
+  const std::string where = dimension == 0   ? "at one place"
                             : dimension == 1 ? "on one line"
-                                             : "on one plane";
+                            : dimension == 2 ? "on one plane"
+                                             : fmt::format("in {} dimensions", dimension);
   throw PublicError(ErrorCode::kDegenerateInput,
                     fmt::format("all points ({}) lie {}: they span no {}", points, where, cell));
 }
@@ -141,9 +145,10 @@ MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& 
   return mesh;
 }
 
-template MeshData<2, std::int32_t> make_mesh<2>(const PointView<2>&, const DelaunayOptions&);
-template MeshData<3, std::int32_t> make_mesh<3>(const PointView<3>&, const DelaunayOptions&);
-template MeshData<2, std::int64_t> make_mesh<2>(const PointView<2>&, const DelaunayOptions&);
-template MeshData<3, std::int64_t> make_mesh<3>(const PointView<3>&, const DelaunayOptions&);
+#define SPILLWAY_INSTANTIATE(D)                                                                 \
+  template MeshData<D, std::int32_t> make_mesh<D>(const PointView<D>&, const DelaunayOptions&); \
+  template MeshData<D, std::int64_t> make_mesh<D>(const PointView<D>&, const DelaunayOptions&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

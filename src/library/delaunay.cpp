@@ -12,6 +12,7 @@
 
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/constructions/circumcentre.h"
+#include "src/geometry/dimensions.h"
 #include "src/library/construction.h"
 #include "src/library/float_environment.h"
 #include "src/library/interpolation.h"
@@ -228,9 +229,10 @@ std::vector<double> Delaunay<D, Index>::interpolate(std::span<const double> valu
       });
 }
 
-template class Delaunay<2, std::int32_t>;
-template class Delaunay<3, std::int32_t>;
-template class Delaunay<2, std::int64_t>;
-template class Delaunay<3, std::int64_t>;
+#define SPILLWAY_INSTANTIATE(D)             \
+  template class Delaunay<D, std::int32_t>; \
+  template class Delaunay<D, std::int64_t>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway

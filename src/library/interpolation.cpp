@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/geometry/constructions/barycentric.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::library {
 
@@ -27,13 +28,12 @@ double interpolated_value(const MeshView<D, Index>& mesh, std::span<const double
   return value < least ? least : value > most ? most : value;
 }
 
-template double interpolated_value<2>(const MeshView<2, std::int32_t>&, std::span<const double>,
-                                      std::int32_t, const Point<2>&);
-template double interpolated_value<3>(const MeshView<3, std::int32_t>&, std::span<const double>,
-                                      std::int32_t, const Point<3>&);
-template double interpolated_value<2>(const MeshView<2, std::int64_t>&, std::span<const double>,
-                                      std::int64_t, const Point<2>&);
-template double interpolated_value<3>(const MeshView<3, std::int64_t>&, std::span<const double>,
-                                      std::int64_t, const Point<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                                    \
+  template double interpolated_value<D>(const MeshView<D, std::int32_t>&, std::span<const double>, \
+                                        std::int32_t, const Point<D>&);                            \
+  template double interpolated_value<D>(const MeshView<D, std::int64_t>&, std::span<const double>, \
+                                        std::int64_t, const Point<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

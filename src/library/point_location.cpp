@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/distance.h"
 #include "src/geometry/predicate_stages.h"
 #include "src/geometry/predicates.h"
@@ -237,33 +238,22 @@ Index nearest_vertex(const MeshView<D, Index>& mesh, const Point<D>& place, Inde
   return step.ties ? lowest_vertex_as_near<D>(mesh, place, step.vertex) : step.vertex;
 }
 
-template Location<std::int32_t> locate<2>(const MeshView<2, std::int32_t>&, const Point<2>&,
-                                          std::int32_t);
-template Location<std::int32_t> locate<3>(const MeshView<3, std::int32_t>&, const Point<3>&,
-                                          std::int32_t);
-template Location<std::int64_t> locate<2>(const MeshView<2, std::int64_t>&, const Point<2>&,
+#define SPILLWAY_INSTANTIATE(D)                                                                 \
+  template Location<std::int32_t> locate<D>(const MeshView<D, std::int32_t>&, const Point<D>&,  \
+                                            std::int32_t);                                      \
+  template Location<std::int64_t> locate<D>(const MeshView<D, std::int64_t>&, const Point<D>&,  \
+                                            std::int64_t);                                      \
+  template std::vector<Location<std::int32_t>> locate_all<D>(const MeshView<D, std::int32_t>&,  \
+                                                             const StartTree<D, std::int32_t>&, \
+                                                             std::span<const Point<D>>);        \
+  template std::int32_t nearest_vertex<D>(const MeshView<D, std::int32_t>&, const Point<D>&,    \
+                                          std::int32_t);                                        \
+  template std::vector<Location<std::int64_t>> locate_all<D>(const MeshView<D, std::int64_t>&,  \
+                                                             const StartTree<D, std::int64_t>&, \
+                                                             std::span<const Point<D>>);        \
+  template std::int64_t nearest_vertex<D>(const MeshView<D, std::int64_t>&, const Point<D>&,    \
                                           std::int64_t);
-template Location<std::int64_t> locate<3>(const MeshView<3, std::int64_t>&, const Point<3>&,
-                                          std::int64_t);
-template std::vector<Location<std::int32_t>> locate_all<2>(const MeshView<2, std::int32_t>&,
-                                                           const StartTree<2, std::int32_t>&,
-                                                           std::span<const Point<2>>);
-template std::int32_t nearest_vertex<2>(const MeshView<2, std::int32_t>&, const Point<2>&,
-                                        std::int32_t);
-template std::vector<Location<std::int32_t>> locate_all<3>(const MeshView<3, std::int32_t>&,
-                                                           const StartTree<3, std::int32_t>&,
-                                                           std::span<const Point<3>>);
-template std::int32_t nearest_vertex<3>(const MeshView<3, std::int32_t>&, const Point<3>&,
-                                        std::int32_t);
-template std::vector<Location<std::int64_t>> locate_all<2>(const MeshView<2, std::int64_t>&,
-                                                           const StartTree<2, std::int64_t>&,
-                                                           std::span<const Point<2>>);
-template std::int64_t nearest_vertex<2>(const MeshView<2, std::int64_t>&, const Point<2>&,
-                                        std::int64_t);
-template std::vector<Location<std::int64_t>> locate_all<3>(const MeshView<3, std::int64_t>&,
-                                                           const StartTree<3, std::int64_t>&,
-                                                           std::span<const Point<3>>);
-template std::int64_t nearest_vertex<3>(const MeshView<3, std::int64_t>&, const Point<3>&,
-                                        std::int64_t);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

@@ -7,6 +7,7 @@
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/geometry/box.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::library {
@@ -82,13 +83,12 @@ void for_each_near(
   release_kept_slabs();
 }
 
-template bool is_finite<2>(const Point<2>&);
-template bool is_finite<3>(const Point<3>&);
-template void for_each_near<2>(
-    std::size_t, unsigned, const std::function<Point<2>(std::size_t)>&,
-    const std::function<void(std::span<const Point<2>>, std::span<const std::size_t>)>&);
-template void for_each_near<3>(
-    std::size_t, unsigned, const std::function<Point<3>(std::size_t)>&,
-    const std::function<void(std::span<const Point<3>>, std::span<const std::size_t>)>&);
+#define SPILLWAY_INSTANTIATE(D)                                           \
+  template bool is_finite<D>(const Point<D>&);                            \
+  template void for_each_near<D>(                                         \
+      std::size_t, unsigned, const std::function<Point<D>(std::size_t)>&, \
+      const std::function<void(std::span<const Point<D>>, std::span<const std::size_t>)>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/delaunay/common/hash.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::library {
@@ -40,9 +41,10 @@ const StartTree<D, Index>& SearchStarts<D, Index>::of(const MeshView<D, Index>& 
   return tree_;
 }
 
-template class SearchStarts<2, std::int32_t>;
-template class SearchStarts<3, std::int32_t>;
-template class SearchStarts<2, std::int64_t>;
-template class SearchStarts<3, std::int64_t>;
+#define SPILLWAY_INSTANTIATE(D)                 \
+  template class SearchStarts<D, std::int32_t>; \
+  template class SearchStarts<D, std::int64_t>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "src/geometry/box.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::library {
@@ -49,9 +50,10 @@ void StartTree<D, Index>::build(std::size_t node, std::span<StartPoint<D, Index>
   group.wait();
 }
 
-template class StartTree<2, std::int32_t>;
-template class StartTree<3, std::int32_t>;
-template class StartTree<2, std::int64_t>;
-template class StartTree<3, std::int64_t>;
+#define SPILLWAY_INSTANTIATE(D)              \
+  template class StartTree<D, std::int32_t>; \
+  template class StartTree<D, std::int64_t>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::library

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 #include "stream/checker/mesh_proof.h"
 
@@ -142,7 +143,10 @@ void prove_boundary(const MeshView<D>& mesh, const std::vector<BoundaryFacet<D>>
   BoundaryProof<D>(mesh, boundary, faults).run();
 }
 
-template void prove_boundary<2>(const MeshView<2>&, const std::vector<BoundaryFacet<2>>&, Faults&);
-template void prove_boundary<3>(const MeshView<3>&, const std::vector<BoundaryFacet<3>>&, Faults&);
+#define SPILLWAY_INSTANTIATE(D)                                                             \
+  template void prove_boundary<D>(const MeshView<D>&, const std::vector<BoundaryFacet<D>>&, \
+                                  Faults&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -5,6 +5,7 @@
 
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/dimensions.h"
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/stream_proof.h"
 
@@ -48,11 +49,8 @@ std::uint64_t hash_of(const Mesh& mesh) {
 CheckReport read_stream(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task) {
   require_dimension(reader.header().dimension);
   CheckReport report;
-  if (reader.header().dimension == 2) {
-    prove_stream<2>(reader, options, task, report);
-  } else {
-    prove_stream<3>(reader, options, task, report);
-  }
+  with_streamed_dimension(reader.header().dimension,
+                          [&](auto d) { prove_stream<d>(reader, options, task, report); });
   return report;
 }
 
@@ -63,11 +61,8 @@ CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options) {
   CheckReport report;
   report.vertices = mesh.vertices.size();
   report.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  if (mesh.header.dimension == 2) {
-    prove_mesh<2>(mesh, options, report);
-  } else {
-    prove_mesh<3>(mesh, options, report);
-  }
+  with_streamed_dimension(mesh.header.dimension,
+                          [&](auto d) { prove_mesh<d>(mesh, options, report); });
   return report;
 }
 
@@ -81,7 +76,7 @@ CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& op
 
 std::uint64_t canonical_hash(const Mesh& mesh) {
   require_dimension(mesh.header.dimension);
-  return mesh.header.dimension == 2 ? hash_of<2>(mesh) : hash_of<3>(mesh);
+  return with_streamed_dimension(mesh.header.dimension, [&](auto d) { return hash_of<d>(mesh); });
 }
 
 }  // namespace spillway::checker

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::checker {
@@ -264,13 +265,12 @@ void prove_mesh(const Mesh& mesh, const CheckerOptions& options, CheckReport& re
   MeshProof<D>(mesh, options, report).run();
 }
 
-template class MeshView<2>;
-template class MeshView<3>;
-template ApexSide apex_side<2>(const std::array<Point<2>, 3>&, const Point<2>&,
-                               const CheckerOptions&);
-template ApexSide apex_side<3>(const std::array<Point<3>, 4>&, const Point<3>&,
-                               const CheckerOptions&);
-template void prove_mesh<2>(const Mesh&, const CheckerOptions&, CheckReport&);
-template void prove_mesh<3>(const Mesh&, const CheckerOptions&, CheckReport&);
+#define SPILLWAY_INSTANTIATE(D)                                                       \
+  template class MeshView<D>;                                                         \
+  template ApexSide apex_side<D>(const std::array<Point<D>, D + 1>&, const Point<D>&, \
+                                 const CheckerOptions&);                              \
+  template void prove_mesh<D>(const Mesh&, const CheckerOptions&, CheckReport&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::checker {
 
@@ -59,7 +60,8 @@ void NeededVertices<D>::finalize(std::uint32_t slot) {
   if (vertex.holders == 0) free_.push_back(slot);
 }
 
-template class NeededVertices<2>;
-template class NeededVertices<3>;
+#define SPILLWAY_INSTANTIATE(D) template class NeededVertices<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -2,6 +2,7 @@
 
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 #include "stream/checker/mesh_proof.h"
 
@@ -117,7 +118,8 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
                   text(b, coordinates));
 }
 
-template class StreamBlock<2>;
-template class StreamBlock<3>;
+#define SPILLWAY_INSTANTIATE(D) template class StreamBlock<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

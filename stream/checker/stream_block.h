@@ -26,10 +26,8 @@ struct SortedFacet {
     for (int j = 0, k = 0; j <= D; ++j) {
       if (j != i) vertices[k++] = corners[j];
     }
-    sort_pair(0, 1);
-    if constexpr (D == 3) {
-      sort_pair(1, 2);
-      sort_pair(0, 1);
+    for (int last = D - 1; last > 0; --last) {
+      for (int j = 0; j < last; ++j) sort_pair(j, j + 1);
     }
   }
 

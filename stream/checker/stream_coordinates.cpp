@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::checker {
 
 template <int D>
@@ -47,7 +49,8 @@ Point<D> StreamCoordinates<D>::to_output(const Point<D>& point) const {
   return result;
 }
 
-template class StreamCoordinates<2>;
-template class StreamCoordinates<3>;
+#define SPILLWAY_INSTANTIATE(D) template class StreamCoordinates<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -5,6 +5,7 @@
 
 #include <spillway/detail/probing_table.h>
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/needed_vertices.h"
@@ -27,7 +28,7 @@ struct UnpairedFacet {
   [[nodiscard]] bool same_key(const UnpairedFacet& other) const { return facet == other.facet; }
   [[nodiscard]] std::uint64_t scattered() const {
     std::uint64_t key = std::uint64_t{facet[0]} << 32 | facet[1];
-    if constexpr (D == 3) key = scatter(key) + facet[2];
+    for (int i = 2; i < D; ++i) key = scatter(key) + facet[i];
     return scatter(key);
   }
 };
@@ -329,7 +330,9 @@ void prove_stream(MeshStreamReader& reader, const CheckerOptions& options, Strea
                [&] { StreamProof<D>(reader, options, task, report).run(); });
 }
 
-template void prove_stream<2>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
-template void prove_stream<3>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template void prove_stream<D>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
@@ -65,9 +66,9 @@ Report triangulate_here(Run& run) {
 Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
-  static_cast<RunStatistics&>(report) = run.engine.asked.dimension == 2
-                                            ? triangulate_stream<2>(points, blocks, setup)
-                                            : triangulate_stream<3>(points, blocks, setup);
+  static_cast<RunStatistics&>(report) =
+      with_streamed_dimension(run.engine.asked.dimension,
+                              [&](auto d) { return triangulate_stream<d>(points, blocks, setup); });
   if (report.threads < run.engine.threads && run.context.options().detail) {
     run.context.options().detail(
         fmt::format("{} of {} threads used: more of them need a larger memory limit",

@@ -5,6 +5,7 @@
 
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -160,12 +161,11 @@ void Sequencer<D>::state(State& state) {
   }
 }
 
-template void Sequencer<2>::state(StateReader&);
-template void Sequencer<2>::state(StateWriter&);
-template void Sequencer<3>::state(StateReader&);
-template void Sequencer<3>::state(StateWriter&);
-
-template class Sequencer<2>;
-template class Sequencer<3>;
+#define SPILLWAY_INSTANTIATE(D)                    \
+  template void Sequencer<D>::state(StateReader&); \
+  template void Sequencer<D>::state(StateWriter&); \
+  template class Sequencer<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

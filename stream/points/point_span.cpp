@@ -6,6 +6,7 @@
 
 #include "src/delaunay/base_case/affine_basis.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -75,9 +76,10 @@ void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points) {
                 {.remedy = independent == 3 ? Remedy::kPlane : Remedy::kNone});
 }
 
-template class PointSpan<2>;
-template class PointSpan<3>;
-template void refuse_flat_points<2>(const PointSpan<2>&, std::uint64_t);
-template void refuse_flat_points<3>(const PointSpan<3>&, std::uint64_t);
+#define SPILLWAY_INSTANTIATE(D) \
+  template class PointSpan<D>;  \
+  template void refuse_flat_points<D>(const PointSpan<D>&, std::uint64_t);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -6,6 +6,7 @@
 
 #include "formats/meshes/spool/mesh_spool.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/simplex_name.h"
 #include "src/runtime/packing.h"
 #include "stream/library/context/context_state.h"
@@ -70,9 +71,9 @@ class RankExecutor final : public Executor {
 
   RankMesh triangulate(Run& run, stream::JoinedInputs& source, BlockSink& blocks,
                        RankCheckpoints* checkpoints) const {
-    const auto triangulate_shared =
-        run.engine.asked.dimension == 2 ? triangulate_over_ranks<2> : triangulate_over_ranks<3>;
-    return triangulate_shared(source, blocks, run.setup(), ranks_, checkpoints);
+    return with_streamed_dimension(run.engine.asked.dimension, [&](auto d) {
+      return triangulate_over_ranks<d>(source, blocks, run.setup(), ranks_, checkpoints);
+    });
   }
 
   /// The first rank tells what others found in the inputs.

@@ -11,6 +11,7 @@
 #include "formats/bytes/bytes.h"
 #include "src/delaunay/base_case/base_case.h"
 #include "src/distributed/items.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/exchange/message_size.h"
@@ -404,10 +405,11 @@ RankMesh triangulate_over_ranks(JoinedInputs& source, BlockSink& blocks, const R
   return RankRun<D>(source, blocks, setup, ranks, checkpoints).run();
 }
 
-template RankMesh triangulate_over_ranks<2>(JoinedInputs&, BlockSink&, const RunSetup&,
-                                            const Ranks&, RankCheckpoints*);
-template RankMesh triangulate_over_ranks<3>(JoinedInputs&, BlockSink&, const RunSetup&,
-                                            const Ranks&, RankCheckpoints*);
+#define SPILLWAY_INSTANTIATE(D)                                                           \
+  template RankMesh triangulate_over_ranks<D>(JoinedInputs&, BlockSink&, const RunSetup&, \
+                                              const Ranks&, RankCheckpoints*);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 std::unique_ptr<JoinedInputs> open_shared_source(FileSystem& files, std::vector<std::string> paths,
                                                  JoinedInputsOptions options, const Ranks& ranks) {

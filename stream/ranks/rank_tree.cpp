@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
 #include "stream/ranks/exchange/messages.h"
 
 namespace spillway::ranks {
@@ -74,7 +75,8 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
   return number;
 }
 
-template class RankTree<2>;
-template class RankTree<3>;
+#define SPILLWAY_INSTANTIATE(D) template class RankTree<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

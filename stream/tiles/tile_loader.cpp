@@ -6,6 +6,7 @@
 
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
 #include "stream/points/equal_points.h"
@@ -263,14 +264,13 @@ TilePoints<D> TileLoader::decode(StoredTile stored) const {
   return result;
 }
 
-template std::optional<TileNode<2>> TileLoader::nodes_below<2>(CutTree::NodeRef) const;
-template std::optional<TileNode<3>> TileLoader::nodes_below<3>(CutTree::NodeRef) const;
-template bool TileLoader::on_disk<2>(const TileNode<2>&) const;
-template bool TileLoader::on_disk<3>(const TileNode<3>&) const;
-template StoredTile TileLoader::read<2>(const TileNode<2>&);
-template StoredTile TileLoader::read<3>(const TileNode<3>&);
-template TilePoints<2> TileLoader::decode<2>(StoredTile) const;
-template TilePoints<3> TileLoader::decode<3>(StoredTile) const;
+#define SPILLWAY_INSTANTIATE(D)                                                           \
+  template std::optional<TileNode<D>> TileLoader::nodes_below<D>(CutTree::NodeRef) const; \
+  template bool TileLoader::on_disk<D>(const TileNode<D>&) const;                         \
+  template StoredTile TileLoader::read<D>(const TileNode<D>&);                            \
+  template TilePoints<D> TileLoader::decode<D>(StoredTile) const;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 template <typename State>
 void TileLoader::state(State& state) {

@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::stream {
 namespace {
 
@@ -87,7 +89,8 @@ TileNode<D> tree_over(std::vector<TileNode<D>> tiles) {
   return tree_of(std::span(tiles));
 }
 
-template TileNode<2> tree_over(std::vector<TileNode<2>>);
-template TileNode<3> tree_over(std::vector<TileNode<3>>);
+#define SPILLWAY_INSTANTIATE(D) template TileNode<D> tree_over(std::vector<TileNode<D>>);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

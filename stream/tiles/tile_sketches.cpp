@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "src/geometry/dimensions.h"
 #include "stream/points/point_sample.h"
 #include "stream/tiles/cuts/tile_cut.h"
 
@@ -84,11 +85,10 @@ void TileSketches::sketch(TileNode<D>& node,
   node.sketch = std::make_shared<PointSketch<D>>(sketch.template sketch<D>());
 }
 
-template void TileSketches::sketch<2>(TileNode<2>&,
-                                      const std::function<const Tile&(std::uint32_t)>&,
-                                      std::uint64_t) const;
-template void TileSketches::sketch<3>(TileNode<3>&,
-                                      const std::function<const Tile&(std::uint32_t)>&,
-                                      std::uint64_t) const;
+#define SPILLWAY_INSTANTIATE(D)          \
+  template void TileSketches::sketch<D>( \
+      TileNode<D>&, const std::function<const Tile&(std::uint32_t)>&, std::uint64_t) const;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/points/encoded_points.h"
 
@@ -283,7 +284,8 @@ std::uint64_t TileTree::held_bytes() const {
   return bytes;
 }
 
-template std::optional<TileNode<2>> TileTree::take_nodes<2>();
-template std::optional<TileNode<3>> TileTree::take_nodes<3>();
+#define SPILLWAY_INSTANTIATE(D) template std::optional<TileNode<D>> TileTree::take_nodes<D>();
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -10,22 +10,16 @@
 #include "src/delaunay/common/schedule.h"
 #include "src/delaunay/delaunay.h"
 #include "src/delaunay/division/divide.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/tiles/storage/tile_points.h"
 #include "stream/tiles/tile_node.h"
+#include "stream/triangulate/tuning.h"
 
 namespace spillway::stream {
 namespace {
 
 constexpr std::size_t kGrain = 4096;
-
-/// Memory for each point of a border while it is triangulated, measured; and where the border is
-/// all there is, as for points of a sphere: then the parts of that triangulation have borders as
-/// large.
-template <int D>
-constexpr std::uint64_t kMergeBytes = D == 2 ? 320 : 900;
-template <int D>
-constexpr std::uint64_t kAllBorderMergeBytes = D == 2 ? 360 : 1400;
 
 /// The same for each simplex, where there are very many for a point.
 constexpr std::uint64_t kMergedSimplexBytes = 180;
@@ -296,7 +290,7 @@ std::uint64_t enough_memory(std::uint64_t points, std::size_t record_size,
   const std::uint64_t border = sizeof(BorderVertex<D>) + record_size +
                                simplices_a_point * sizeof(std::array<VertexId, D + 1>);
   const std::uint64_t merge =
-      std::max(kAllBorderMergeBytes<D>, simplices_a_point * kMergedSimplexBytes);
+      std::max(TileTuning<D>::kAllBorderMergeBytes, simplices_a_point * kMergedSimplexBytes);
   return points * (kLoadedPointBytes + record_size + 2 * border + merge);
 }
 
@@ -310,7 +304,8 @@ std::uint64_t enough_for(const WorkForecast& forecast, std::uint64_t points) {
 
 template <int D>
 std::uint64_t merge_bytes(std::uint64_t border_points, std::uint64_t below) {
-  return border_points * (2 * border_points > below ? kAllBorderMergeBytes<D> : kMergeBytes<D>);
+  return border_points * (2 * border_points > below ? TileTuning<D>::kAllBorderMergeBytes
+                                                    : TileTuning<D>::kMergeBytes);
 }
 
 template <int D, PointTree Tree>
@@ -319,19 +314,15 @@ MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tre
   return Merge<D, Tree>(children, trees, budget, kernel).run(task);
 }
 
-template std::uint64_t enough_memory<2>(std::uint64_t, std::size_t, std::uint64_t);
-template std::uint64_t enough_memory<3>(std::uint64_t, std::size_t, std::uint64_t);
-template std::uint64_t enough_for<2>(const WorkForecast&, std::uint64_t);
-template std::uint64_t enough_for<3>(const WorkForecast&, std::uint64_t);
-template std::uint64_t merge_bytes<2>(std::uint64_t, std::uint64_t);
-template std::uint64_t merge_bytes<3>(std::uint64_t, std::uint64_t);
-template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const Part<2>* const>,
-                                       MemoryBudget&, Task&, Kernel);
-template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const Part<3>* const>,
-                                       MemoryBudget&, Task&, Kernel);
-template MergedBorder<2> merge_borders(std::span<Border<2>>, std::span<const TileNode<2>* const>,
-                                       MemoryBudget&, Task&, Kernel);
-template MergedBorder<3> merge_borders(std::span<Border<3>>, std::span<const TileNode<3>* const>,
-                                       MemoryBudget&, Task&, Kernel);
+#define SPILLWAY_INSTANTIATE(D)                                                                 \
+  template std::uint64_t enough_memory<D>(std::uint64_t, std::size_t, std::uint64_t);           \
+  template std::uint64_t enough_for<D>(const WorkForecast&, std::uint64_t);                     \
+  template std::uint64_t merge_bytes<D>(std::uint64_t, std::uint64_t);                          \
+  template MergedBorder<D> merge_borders(std::span<Border<D>>, std::span<const Part<D>* const>, \
+                                         MemoryBudget&, Task&, Kernel);                         \
+  template MergedBorder<D> merge_borders(                                                       \
+      std::span<Border<D>>, std::span<const TileNode<D>* const>, MemoryBudget&, Task&, Kernel);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

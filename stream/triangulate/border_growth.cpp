@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/geometry/dimensions.h"
 #include "stream/tiles/storage/tile_points.h"
 
 namespace spillway::stream {
@@ -123,7 +124,8 @@ std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
   return static_cast<std::uint64_t>(std::min(of_any_size, of_all_loaded));
 }
 
-template class BorderGrowth<2>;
-template class BorderGrowth<3>;
+#define SPILLWAY_INSTANTIATE(D) template class BorderGrowth<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::stream {
 
 template <int D>
@@ -113,7 +115,8 @@ void CellTree<D>::add_last_join(Completion& done) {
   done.joins.push_back({parents_.size(), {*all}, node, {}});
 }
 
-template class CellTree<2>;
-template class CellTree<3>;
+#define SPILLWAY_INSTANTIATE(D) template class CellTree<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

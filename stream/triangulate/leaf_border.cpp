@@ -5,6 +5,7 @@
 
 #include "src/delaunay/border/border_search.h"
 #include "src/delaunay/border/facing_sides.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -187,9 +188,10 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
   return told;
 }
 
-template LeafFates search_leaf_border(const LeafPart<2>&, Surroundings<2>, BaseCase<2>&);
-template LeafFates search_leaf_border(const LeafPart<3>&, Surroundings<3>, BaseCase<3>&);
-template LeafFates test_leaf_border(const LeafToSettle<2>&, const Surroundings<2>&);
-template LeafFates test_leaf_border(const LeafToSettle<3>&, const Surroundings<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                             \
+  template LeafFates search_leaf_border(const LeafPart<D>&, Surroundings<D>, BaseCase<D>&); \
+  template LeafFates test_leaf_border(const LeafToSettle<D>&, const Surroundings<D>&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

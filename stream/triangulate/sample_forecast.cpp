@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "src/delaunay/base_case/base_case.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -46,7 +47,8 @@ WorkForecast SampleForecast<D>::forecast() const {
       {.points = sample_.size(), .simplices = count_simplices<D>(sample_, 1)}, kBytesOfSimplex);
 }
 
-template class SampleForecast<2>;
-template class SampleForecast<3>;
+#define SPILLWAY_INSTANTIATE(D) template class SampleForecast<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

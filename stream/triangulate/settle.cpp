@@ -4,6 +4,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/longest_edge.h"
 
 namespace spillway::stream {
@@ -268,9 +269,10 @@ Settled<D> settle(const Part<D>& part, const OutputOptions& output) {
   return Settlement<D, Part<D>>(part, output).run();
 }
 
-template Settled<2> settle(const MergeToSettle<2>&, const OutputOptions&);
-template Settled<3> settle(const MergeToSettle<3>&, const OutputOptions&);
-template Settled<2> settle(const LeafToSettle<2>&, const OutputOptions&);
-template Settled<3> settle(const LeafToSettle<3>&, const OutputOptions&);
+#define SPILLWAY_INSTANTIATE(D)                                              \
+  template Settled<D> settle(const MergeToSettle<D>&, const OutputOptions&); \
+  template Settled<D> settle(const LeafToSettle<D>&, const OutputOptions&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -8,6 +8,7 @@
 
 #include "src/delaunay/base_case/base_case.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/most_threads.h"
 #include "src/parallel/parallel.h"
 
@@ -474,7 +475,8 @@ RunStatistics TileEngine<D>::statistics() {
   return std::move(statistics_);
 }
 
-template class TileEngine<2>;
-template class TileEngine<3>;
+#define SPILLWAY_INSTANTIATE(D) template class TileEngine<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

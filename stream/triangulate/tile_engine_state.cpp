@@ -4,6 +4,7 @@
 
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
+#include "src/geometry/dimensions.h"
 #include "stream/triangulate/tile_engine.h"
 
 namespace spillway::stream {
@@ -60,17 +61,14 @@ void TileEngine<D>::state(State& state) {
   }
 }
 
-template bool TileEngine<2>::rests_before(const Node&) const;
-template void TileEngine<2>::save();
-template void TileEngine<2>::take_kept_border(Node&);
-template void TileEngine<2>::add_restored_cells();
-template void TileEngine<2>::state(StateReader&);
-template void TileEngine<2>::state(StateWriter&);
-template bool TileEngine<3>::rests_before(const Node&) const;
-template void TileEngine<3>::save();
-template void TileEngine<3>::take_kept_border(Node&);
-template void TileEngine<3>::add_restored_cells();
-template void TileEngine<3>::state(StateReader&);
-template void TileEngine<3>::state(StateWriter&);
+#define SPILLWAY_INSTANTIATE(D)                                 \
+  template bool TileEngine<D>::rests_before(const Node&) const; \
+  template void TileEngine<D>::save();                          \
+  template void TileEngine<D>::take_kept_border(Node&);         \
+  template void TileEngine<D>::add_restored_cells();            \
+  template void TileEngine<D>::state(StateReader&);             \
+  template void TileEngine<D>::state(StateWriter&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -12,9 +12,11 @@
 #include "src/delaunay/border/point_search.h"
 #include "src/delaunay/division/filled_share.h"
 #include "src/delaunay/division/point_tree.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/triangulate/leaf_border.h"
 #include "stream/triangulate/merge_tree.h"
+#include "stream/triangulate/tuning.h"
 
 namespace spillway::stream {
 namespace {
@@ -23,16 +25,6 @@ constexpr std::size_t kGrain = 4096;
 
 /// A merge may ask for points in so many steps for each simplex, or each point below it.
 constexpr std::size_t kStepsOfOne = 64;
-
-/// Of smaller parts that are divided, the longest axis is cut unseen: what a sample tells would
-/// cost more than it saves.
-template <int D>
-constexpr std::size_t kSmallestJudged = D == 2 ? 4'096 : 8'192;
-
-/// Memory for each point of a leaf while it is triangulated, where it makes as many simplices as
-/// usual: the records of the kernel, and then what is made of them.
-template <int D>
-constexpr std::uint64_t kLeafBytes = D == 2 ? 160 : 540;
 
 template <int D>
 void count_settled(const Settled<D>& settled, StreamCounts& counts) {
@@ -179,7 +171,7 @@ class TileRun {
                          .children = context_.asked.children,
                          .stop = {},
                          .fill_leaves = true,
-                         .smallest_judged = kSmallestJudged<D>,
+                         .smallest_judged = TileTuning<D>::kSmallestJudged,
                          .largest_undivided = largest_undivided<D>(context_.budget.limit(),
                                                                    context_.output.record_size)},
                         division.data());
@@ -247,7 +239,8 @@ class TileRun {
     const Part<D>& part = *node.tree;
     const auto points = points_of(part);
     WorkingMemory<D> memory(
-        WorkLease(context_.budget, part.size() * (kLeafBytes<D> + context_.output.record_size),
+        WorkLease(context_.budget,
+                  part.size() * (TileTuning<D>::kLeafBytes + context_.output.record_size),
                   "the triangulation of a leaf"),
         context_.leaf_points);
     BaseCase<D> leaf = base_case(node, points, memory.lease());
@@ -386,7 +379,7 @@ class TileRun {
 template <int D>
 std::size_t largest_undivided(std::uint64_t limit, std::size_t record_size) {
   constexpr std::uint64_t kShare = 4;
-  return limit / kShare / (kLeafBytes<D> + record_size);
+  return limit / kShare / (TileTuning<D>::kLeafBytes + record_size);
 }
 
 template <int D>
@@ -414,11 +407,11 @@ MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& i
   return {pass_on(context, std::move(settled), input.place), final_simplices};
 }
 
-template std::size_t largest_undivided<2>(std::uint64_t, std::size_t);
-template std::size_t largest_undivided<3>(std::uint64_t, std::size_t);
-template Border<2> triangulate_tile(const TileContext<2>&, TileInput<2>, Task&);
-template Border<3> triangulate_tile(const TileContext<3>&, TileInput<3>, Task&);
-template MergedTiles<2> merge_tiles(const TileContext<2>&, const MergeInput<2>&, Task&);
-template MergedTiles<3> merge_tiles(const TileContext<3>&, const MergeInput<3>&, Task&);
+#define SPILLWAY_INSTANTIATE(D)                                                    \
+  template std::size_t largest_undivided<D>(std::uint64_t, std::size_t);           \
+  template Border<D> triangulate_tile(const TileContext<D>&, TileInput<D>, Task&); \
+  template MergedTiles<D> merge_tiles(const TileContext<D>&, const MergeInput<D>&, Task&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

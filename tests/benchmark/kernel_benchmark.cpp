@@ -1,5 +1,4 @@
-// The own kernels beside CGAL's Delaunay_triangulation_2 and _3, in one process, in turns, on one
-// core. Prints one Markdown table; times are the thread's processor time, medians over the turns,
+// The own kernels beside CGAL's Delaunay triangulations, in one process, in turns, on one core. Prints one Markdown table; times are the thread's processor time, medians over the turns,
 // and include the sorting of the points on both sides.
 
 #include <fmt/format.h>
@@ -20,6 +19,7 @@
 #include "src/error.h"
 #include "src/generators/generators.h"
 #include "src/generators/random.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "tests/benchmark/cgal_timing.h"
 
@@ -86,6 +86,17 @@ Points<3> random_integers(std::size_t count) {
   return points;
 }
 
+/// In more than three dimensions.
+template <int D>
+Points<D> random_points(const std::string& set, std::size_t count) {
+  Random random(42);
+  Points<D> points(count);
+  for (Point<D>& p : points) {
+    for (double& c : p) c = set == "normal" ? random.normal_pair()[0] : random.uniform();
+  }
+  return points;
+}
+
 template <int D>
 Points<D> make_points(const std::string& set, std::size_t count) {
   if constexpr (D == 2) {
@@ -96,13 +107,18 @@ Points<D> make_points(const std::string& set, std::size_t count) {
       for (Point<2>& p : points) p = {p[0] * 0.01, p[1] * 0.01};
       return points;
     }
+  } else if constexpr (D > 3) {
+    if (set == "uniform" || set == "normal") return random_points<D>(set, count);
+    throw Failure(fmt::format("there is no set {} in {} dimensions", set, D));
   } else {
     if (set == "integers") return random_integers(count);
     if (set == "sphere") return make_points<3>("circle", count);
   }
-  Points<D> points = generated_points<D>({.family = family_by_name(set), .count = count});
-  if (set == "lattice") shuffle<D>(points);
-  return points;
+  if constexpr (D <= 3) {
+    Points<D> points = generated_points<D>({.family = family_by_name(set), .count = count});
+    if (set == "lattice") shuffle<D>(points);
+    return points;
+  }
 }
 
 /// What the process has in memory, or had at most since the last call of forget_peak().
@@ -185,9 +201,23 @@ void compare(const std::string& set, std::size_t count, unsigned repetitions) {
 
 /// The sets that are timed if none are asked for.
 std::vector<std::string> usual_sets(int dimension) {
+  if (dimension > 3) return {"uniform", "normal"};
   if (dimension == 3) return {"uniform", "terrain", "lattice", "integers", "sphere"};
   return {"uniform", "terrain",  "las",    "metres",
           "lattice", "clusters", "circle", "integer-circles"};
+}
+
+std::vector<std::size_t> usual_counts(int dimension) {
+  switch (dimension) {
+    case 4:
+      return {2'000, 20'000};
+    case 5:
+      return {500, 2'000};
+    case 6:
+      return {150, 500};
+    default:
+      return {50'000, 100'000, dimension == 2 ? std::size_t{200'000} : 300'000, 1'000'000};
+  }
 }
 
 }  // namespace
@@ -200,7 +230,7 @@ int main(int argc, char** argv) {
   unsigned repetitions = 5;
   int vectors = 8;
   CLI::App app("Times CGAL's Delaunay triangulations and the own kernels in turns");
-  app.add_option("--dim", dimension, "Dimension")->check(CLI::Range(2, 3));
+  app.add_option("--dim", dimension, "Dimension")->check(CLI::Range(2, 6));
   app.add_option("--sets", sets,
                  "Families of points; in the plane also las, metres, integer-circles, in space "
                  "integers, sphere")
@@ -208,16 +238,14 @@ int main(int argc, char** argv) {
   app.add_option("-n,--points", counts, "Points of each set")->delimiter(',');
   app.add_option("-r,--repetitions", repetitions, "Turns; medians are printed");
   app.add_option("--vectors", vectors,
-                 "In space: 2 for SSE2, 4 for AVX2, 8 for AVX-512's registers, too")
+                 "Not in the plane: 2 for SSE2, 4 for AVX2, 8 for AVX-512's registers, too")
       ->check(CLI::IsMember({2, 4, 8}));
   CLI11_PARSE(app, argc, argv);
   if (sets.empty()) sets = spillway::test::usual_sets(dimension);
-  if (counts.empty()) {
-    counts = {50'000, 100'000, dimension == 2 ? std::size_t{200'000} : 300'000, 1'000'000};
-  }
+  if (counts.empty()) counts = spillway::test::usual_counts(dimension);
   spillway::delaunay::limit_lanes(vectors);
   try {
-    if (dimension == 3) {
+    if (dimension > 2) {
       const int width = spillway::delaunay::lane_width();
       fmt::print("{}\n\n", width == 8   ? "AVX2 with the registers of AVX-512"
                            : width == 4 ? "AVX2"
@@ -229,8 +257,8 @@ int main(int argc, char** argv) {
     spillway::parallel::with_threads(1, [&] {  // whose processor time is measured
       for (const std::string& set : sets) {
         for (const std::size_t count : counts) {
-          dimension == 2 ? spillway::test::compare<2>(set, count, repetitions)
-                         : spillway::test::compare<3>(set, count, repetitions);
+          spillway::geometry::with_dimension(
+              dimension, [&](auto d) { spillway::test::compare<d>(set, count, repetitions); });
         }
       }
     });

@@ -11,6 +11,7 @@ namespace spillway::test {
 /// The finite simplices of CGAL's Delaunay triangulation of all points, each as sorted input
 /// indices (of equal points the lowest), the whole list sorted. Empty if the points span fewer
 /// dimensions.
+/// For D > 3 CGAL does not perturb: it has this set only where no D + 2 points are cospherical.
 template <int D>
 std::vector<std::array<VertexId, D + 1>> cgal_simplices(std::span<const Point<D>> points);
 

@@ -36,6 +36,16 @@ spillway_test(kernel_3d_test property
   LIBS kernel_sets
   TIMEOUT 300)
 
+find_package(Eigen3 REQUIRED NO_MODULE)
+add_library(cgal_oracle_nd STATIC delaunay/cgal_oracle_nd.cpp)
+target_link_libraries(cgal_oracle_nd PUBLIC spillway_build spillway_headers
+                      PRIVATE CGAL::CGAL Eigen3::Eigen)
+
+spillway_test(kernel_nd_test property
+  SOURCES delaunay/kernel_nd/kernel_nd_test.cpp delaunay/verify.cpp
+  LIBS spillway_delaunay cgal_oracle_nd
+  TIMEOUT 300)
+
 spillway_test(kernel_shared_data_test property
   SOURCES delaunay/kernel_shared_data_test.cpp
   LIBS kernel_sets spillway_formats fmt::fmt

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::test {
@@ -121,12 +122,14 @@ class Verifier {
       fault("simplices use " + std::to_string(used.size()) +
             " vertices (the infinite one included), not " + std::to_string(t_.vertex_count() + 1));
     }
-    const std::size_t facets = simplices * (D + 1) / 2;
-    const auto euler =
-        static_cast<std::int64_t>(used.size()) - static_cast<std::int64_t>(edges.size()) +
-        (D == 2 ? static_cast<std::int64_t>(simplices)
-                : static_cast<std::int64_t>(facets) - static_cast<std::int64_t>(simplices));
-    if (euler != (D == 2 ? 2 : 0)) fault("Euler's relation fails: " + std::to_string(euler));
+    if constexpr (D <= 3) {
+      const std::size_t facets = simplices * (D + 1) / 2;
+      const auto euler =
+          static_cast<std::int64_t>(used.size()) - static_cast<std::int64_t>(edges.size()) +
+          (D == 2 ? static_cast<std::int64_t>(simplices)
+                  : static_cast<std::int64_t>(facets) - static_cast<std::int64_t>(simplices));
+      if (euler != (D == 2 ? 2 : 0)) fault("Euler's relation fails: " + std::to_string(euler));
+    }
     for (const DroppedDuplicate& d : t_.duplicates) {
       if (used.count(d.dropped) != 0 || used.count(d.kept) == 0 ||
           t_.points[d.dropped] != t_.points[d.kept] ||
@@ -167,7 +170,9 @@ std::vector<std::string> verify(const Triangulation<D>& triangulation) {
   return Verifier<D>(triangulation).run();
 }
 
-template std::vector<std::string> verify<2>(const Triangulation<2>&);
-template std::vector<std::string> verify<3>(const Triangulation<3>&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template std::vector<std::string> verify<D>(const Triangulation<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::test

@@ -89,7 +89,8 @@ Point<D> cospherical_point(Random& random) {
       {{0, 65, 0}, {16, 63, 0}, {25, 60, 0}, {33, 56, 0}, {39, 52, 0}}};
   constexpr std::array<std::array<double, 3>, 5> kSpace{
       {{0, 0, 21}, {4, 5, 20}, {4, 8, 19}, {4, 13, 16}, {8, 11, 16}}};
-  auto p = (D == 2 ? kPlane : kSpace)[random.integer(0, 4)];
+  Point<D> p{};  // in more dimensions in any three of them
+  std::copy_n((D == 2 ? kPlane : kSpace)[random.integer(0, 4)].begin(), std::min(D, 3), p.begin());
   for (int k = D - 1; k > 0; --k) std::swap(p[k], p[random.integer(0, k)]);
   Point<D> result{};
   for (int k = 0; k < D; ++k) result[k] = random.integer(0, 1) == 0 ? p[k] : -p[k];

@@ -15,7 +15,9 @@ constexpr std::size_t kGroups = 2000;
 
 template <typename Dimension>
 class PredicatesTest : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                    std::integral_constant<int, 4>, std::integral_constant<int, 5>,
+                                    std::integral_constant<int, 6>>;
 TYPED_TEST_SUITE(PredicatesTest, Dimensions);
 
 // The groups of a family whose simplex is not degenerate, turned to be positively oriented.

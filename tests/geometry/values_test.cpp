@@ -145,7 +145,9 @@ TEST(LatticeTest, KeepsIntegersApartWhereThatIsExact) {
 
 template <typename Dimension>
 class CanonicalHashTest : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                    std::integral_constant<int, 4>, std::integral_constant<int, 5>,
+                                    std::integral_constant<int, 6>>;
 TYPED_TEST_SUITE(CanonicalHashTest, Dimensions);
 
 TYPED_TEST(CanonicalHashTest, DependsNeitherOnSimplexNorVertexOrder) {

@@ -74,8 +74,8 @@ class BadPoints(unittest.TestCase):
             self.refused(errors.InvalidArgumentError, "point 42 .* not finite", heights, dim=2)
 
     def test_shape(self):
-        for points in (3.0, [], [1.0, 2.0], np.zeros((3, 4)), np.zeros((3, 1)), np.zeros((2, 2, 2))):
-            self.refused(errors.InvalidArgumentError, "give rows of 2 or 3", points)
+        for points in (3.0, [], [1.0, 2.0], np.zeros((3, 7)), np.zeros((3, 1)), np.zeros((2, 2, 2))):
+            self.refused(errors.InvalidArgumentError, "give rows of 2 to 6", points)
         self.refused(errors.InvalidArgumentError, "no array of numbers", [[1, 2], [3]])
 
     def test_types_without_an_exact_value(self):
@@ -126,7 +126,9 @@ class BadPoints(unittest.TestCase):
 
     def test_dim(self):
         self.refused(errors.InvalidArgumentError, "dim is 4", random_points(9, 3), dim=4)
+        self.refused(errors.InvalidArgumentError, "dim is 7", random_points(9, 3), dim=7)
         self.refused(errors.InvalidArgumentError, "2 columns", random_points(9, 2), dim=3)
+        self.refused(errors.InvalidArgumentError, "4 columns", random_points(9, 4), dim=2)
         both = np.array([2, 3])
         self.refused(errors.InvalidArgumentError, "dim is array", random_points(9, 3), dim=both)
 

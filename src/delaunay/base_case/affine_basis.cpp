@@ -1,5 +1,10 @@
 #include "src/delaunay/base_case/affine_basis.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 
 namespace spillway::delaunay {
@@ -16,6 +21,38 @@ bool collinear(const Point<D>& a, const Point<D>& b, const Point<D>& c) {
   return true;
 }
 
+/// Whether D points and one more span D dimensions.
+template <int D>
+bool spans_all_axes(std::span<const Point<D>> basis, const Point<D>& p) {
+  std::array<Point<D>, D + 1> simplex;
+  std::copy(basis.begin(), basis.end(), simplex.begin());
+  simplex[D] = p;
+  return orientation<D>(simplex) != 0;
+}
+
+/// The same of from N to D - 1 points: they are independent if their shadow on some axes, as many
+/// as there are points, is.
+template <int N, int D>
+bool is_independent_in_shadow(std::span<const Point<D>> basis, const Point<D>& p) {
+  if constexpr (N < D) {
+    if (basis.size() != N) return is_independent_in_shadow<N + 1, D>(basis, p);
+    for (unsigned axes = 0; axes < 1U << D; ++axes) {
+      if (std::popcount(axes) != N) continue;
+      const auto shadow = [axes](const Point<D>& point) {
+        Point<N> result;
+        for (int k = 0, n = 0; k < D; ++k) {
+          if ((axes >> k & 1U) != 0) result[n++] = point[k];
+        }
+        return result;
+      };
+      std::array<Point<N>, N> shadows;
+      std::transform(basis.begin(), basis.end(), shadows.begin(), shadow);
+      if (spans_all_axes<N>(shadows, shadow(p))) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 template <int D>
@@ -23,7 +60,10 @@ bool is_independent(std::span<const Point<D>> basis, const Point<D>& p) {
   if (basis.empty()) return true;
   if (basis.size() == 1) return p != basis[0];
   if (basis.size() == 2) return !collinear<D>(basis[0], basis[1], p);
-  if constexpr (D == 3) return orientation<3>({basis[0], basis[1], basis[2], p}) != 0;
+  if constexpr (D > 2) {
+    if (basis.size() == D) return spans_all_axes<D>(basis, p);
+  }
+  if constexpr (D > 3) return is_independent_in_shadow<3, D>(basis, p);
   return false;
 }
 
@@ -39,9 +79,10 @@ std::vector<VertexId> affine_basis(std::span<const Point<D>> points) {
   return basis;
 }
 
-template std::vector<VertexId> affine_basis<2>(std::span<const Point<2>>);
-template std::vector<VertexId> affine_basis<3>(std::span<const Point<3>>);
-template bool is_independent<2>(std::span<const Point<2>>, const Point<2>&);
-template bool is_independent<3>(std::span<const Point<3>>, const Point<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                              \
+  template std::vector<VertexId> affine_basis<D>(std::span<const Point<D>>); \
+  template bool is_independent<D>(std::span<const Point<D>>, const Point<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

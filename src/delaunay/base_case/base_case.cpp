@@ -4,17 +4,17 @@
 #include <numeric>
 
 #include "src/delaunay/base_case/affine_basis.h"
+#include "src/delaunay/common/tuning.h"
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_2d/kernel_2d.h"
 #include "src/delaunay/kernel_3d/kernel_3d.h"
 #include "src/delaunay/kernel_common/insertion_arena.h"
+#include "src/delaunay/kernel_nd/kernel_nd.h"
+#include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::delaunay {
 namespace {
-
-/// Of the largest array of a base case, more than a point usually takes in it.
-template <int D>
-constexpr std::size_t kWorkingBytes = D == 2 ? 200 : 800;
 
 template <int D>
 std::vector<DroppedDuplicate> find_duplicates(const BaseCaseInput<D>& input) {
@@ -39,11 +39,19 @@ std::vector<DroppedDuplicate> find_duplicates(const BaseCaseInput<D>& input) {
 
 template <int D>
 BaseCase<D> triangulate_spanning(const BaseCaseInput<D>& input, std::span<const VertexId> basis) {
-  if (input.kernel == Kernel::kCgal) return cgal_base_case<D>(input, basis);
-  if constexpr (D == 2) {
-    return kernel_2d_base_case(input, basis);
+  if constexpr (D > 3) {
+    if (input.kernel == Kernel::kCgal) {
+      throw Failure("CGAL's kernel serves in two and three dimensions only",
+                    ErrorCode::kInvalidArgument);
+    }
+    return kernel_nd_base_case<D>(input, basis);
   } else {
-    return kernel_3d_base_case(input, basis);
+    if (input.kernel == Kernel::kCgal) return cgal_base_case<D>(input, basis);
+    if constexpr (D == 2) {
+      return kernel_2d_base_case(input, basis);
+    } else {
+      return kernel_3d_base_case(input, basis);
+    }
   }
 }
 
@@ -66,12 +74,13 @@ void release_base_case_memory() {
 
 template <int D>
 void release_base_case_memory_above(std::size_t points) {
-  release_kept_slabs(points * kWorkingBytes<D>);
+  release_kept_slabs(points * Tuning<D>::kBaseCaseBytes);
 }
 
-template BaseCase<2> triangulate_base_case<2>(const BaseCaseInput<2>&);
-template BaseCase<3> triangulate_base_case<3>(const BaseCaseInput<3>&);
-template void release_base_case_memory_above<2>(std::size_t);
-template void release_base_case_memory_above<3>(std::size_t);
+#define SPILLWAY_INSTANTIATE(D)                                           \
+  template BaseCase<D> triangulate_base_case<D>(const BaseCaseInput<D>&); \
+  template void release_base_case_memory_above<D>(std::size_t);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicate_stages.h"
 
 namespace spillway::delaunay {
@@ -62,7 +63,8 @@ bool ConflictRegion<D>::may_hold(const Point<D>& point) const {
   return may_be_positive_or_zero<stages::InSphere<D>>(points);
 }
 
-template class ConflictRegion<2>;
-template class ConflictRegion<3>;
+#define SPILLWAY_INSTANTIATE(D) template class ConflictRegion<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -10,6 +10,7 @@
 #include "src/delaunay/border/conflict_region_batch.h"
 #include "src/delaunay/border/facing_sides.h"
 #include "src/delaunay/common/hash.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::delaunay {
@@ -158,21 +159,16 @@ std::vector<SimplexId> border_among(const Triangulation<D>& triangulation, std::
   return border;
 }
 
-template bool asking_for_points_pays<2>(const Triangulation<2>&, const Part<2>&,
-                                        const Siblings<2>&);
-template bool asking_for_points_pays<3>(const Triangulation<3>&, const Part<3>&,
-                                        const Siblings<3>&);
-template std::vector<SimplexId> find_border<2>(const Triangulation<2>&, const Box<2>&,
-                                               std::span<const SimplexId>, const Siblings<2>&,
-                                               std::span<ListMarks>);
-template std::vector<SimplexId> border_among<2>(const Triangulation<2>&, std::uint32_t,
-                                                std::span<const std::uint32_t>, const Siblings<2>&,
-                                                std::span<ListMarks>);
-template std::vector<SimplexId> find_border<3>(const Triangulation<3>&, const Box<3>&,
-                                               std::span<const SimplexId>, const Siblings<3>&,
-                                               std::span<ListMarks>);
-template std::vector<SimplexId> border_among<3>(const Triangulation<3>&, std::uint32_t,
-                                                std::span<const std::uint32_t>, const Siblings<3>&,
-                                                std::span<ListMarks>);
+#define SPILLWAY_INSTANTIATE(D)                                                                  \
+  template bool asking_for_points_pays<D>(const Triangulation<D>&, const Part<D>&,               \
+                                          const Siblings<D>&);                                   \
+  template std::vector<SimplexId> find_border<D>(const Triangulation<D>&, const Box<D>&,         \
+                                                 std::span<const SimplexId>, const Siblings<D>&, \
+                                                 std::span<ListMarks>);                          \
+  template std::vector<SimplexId> border_among<D>(const Triangulation<D>&, std::uint32_t,        \
+                                                  std::span<const std::uint32_t>,                \
+                                                  const Siblings<D>&, std::span<ListMarks>);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

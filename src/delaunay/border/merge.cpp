@@ -11,6 +11,7 @@
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/common/schedule.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::delaunay {
@@ -466,11 +467,11 @@ PartSurface merge(Triangulation<D>& triangulation, std::span<ListMarks> marks,
   return merge.surface();
 }
 
-template PartSurface merge<2>(Triangulation<2>&, std::span<ListMarks>, std::span<const RunBoxes<2>>,
-                              const Part<2>&, std::span<PartSurface>, bool,
-                              const BorderTriangulator<2>&, Task&);
-template PartSurface merge<3>(Triangulation<3>&, std::span<ListMarks>, std::span<const RunBoxes<3>>,
-                              const Part<3>&, std::span<PartSurface>, bool,
-                              const BorderTriangulator<3>&, Task&);
+#define SPILLWAY_INSTANTIATE(D)                                                              \
+  template PartSurface merge<D>(                                                             \
+      Triangulation<D>&, std::span<ListMarks>, std::span<const RunBoxes<D>>, const Part<D>&, \
+      std::span<PartSurface>, bool, const BorderTriangulator<D>&, Task&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

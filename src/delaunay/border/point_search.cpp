@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "src/delaunay/common/tuning.h"
+#include "src/geometry/dimensions.h"
+
 namespace spillway::delaunay {
 namespace {
 
 /// What a point takes beside a box, about.
 constexpr std::size_t kStepsOfPoint = 4;
-/// What it is worth to know that a region holds no point: its simplex is not merged, and of those
-/// behind it none is asked about.
-template <int D>
-constexpr std::size_t kStepsOfNo = D == 2 ? 8'192 : 32'768;
 
 }  // namespace
 
@@ -28,7 +27,7 @@ bool PointSearch<D>::may_hold_a_point(const ConflictRegion<D>& region) {
   boxes_left_ = siblings_.most_boxes;
   const bool held = std::any_of(siblings_.parts.begin(), siblings_.parts.end(),
                                 [&](const Part<D>* part) { return in_part(region, *part); });
-  steps_earned_ += held ? 0 : kStepsOfNo<D>;
+  steps_earned_ += held ? 0 : Tuning<D>::kStepsOfNo;
   return held;
 }
 
@@ -104,11 +103,11 @@ bool asking_for_points_pays(std::span<const std::array<VertexId, D + 1>> sample,
   return held <= sample.size() / 2;
 }
 
-template bool asking_for_points_pays<2>(std::span<const std::array<VertexId, 3>>,
-                                        std::span<const Point<2>>, const Siblings<2>&);
-template bool asking_for_points_pays<3>(std::span<const std::array<VertexId, 4>>,
-                                        std::span<const Point<3>>, const Siblings<3>&);
-template class PointSearch<2>;
-template class PointSearch<3>;
+#define SPILLWAY_INSTANTIATE(D)                                                           \
+  template bool asking_for_points_pays<D>(std::span<const std::array<VertexId, D + 1>>,   \
+                                          std::span<const Point<D>>, const Siblings<D>&); \
+  template class PointSearch<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

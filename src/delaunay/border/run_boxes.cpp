@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::delaunay {
 namespace {
 
@@ -37,7 +39,8 @@ void RunBoxes<D>::add_levels() {
   }
 }
 
-template class RunBoxes<2>;
-template class RunBoxes<3>;
+#define SPILLWAY_INSTANTIATE(D) template class RunBoxes<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -1,5 +1,7 @@
 #include "src/delaunay/common/triangulation.h"
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::delaunay {
 
 template <int D>
@@ -9,7 +11,8 @@ std::size_t Triangulation<D>::finite_count() const {
   return all - hull.size();
 }
 
-template std::size_t Triangulation<2>::finite_count() const;
-template std::size_t Triangulation<3>::finite_count() const;
+#define SPILLWAY_INSTANTIATE(D) template std::size_t Triangulation<D>::finite_count() const;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

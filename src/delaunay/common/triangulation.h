@@ -27,7 +27,7 @@ inline constexpr SimplexId kNoSimplex{~0U, ~0U};
 /// A cell of D+1 vertices, positively oriented. In an infinite simplex one of them is
 /// kInfiniteVertex, and any finite point beyond its facet, put in that place, makes it positive.
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 struct Simplex {
   std::array<VertexId, D + 1> vertices;
   /// Across the facet opposite vertices[i]: an index in the same list, or, from kLink on, kLink

@@ -1,5 +1,7 @@
 #include "src/delaunay/division/axis_rule.h"
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::delaunay {
 
 template <int D>
@@ -12,7 +14,8 @@ std::optional<Cut> AxisRule<D>::choose(const PointsToCut<D>& points) const {
   return Cut{axis, value_at<D>(points.sample, axis, points.share)};
 }
 
-template class AxisRule<2>;
-template class AxisRule<3>;
+#define SPILLWAY_INSTANTIATE(D) template class AxisRule<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -5,6 +5,7 @@
 
 #include "src/delaunay/base_case/base_case.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::delaunay {
 namespace {
@@ -120,7 +121,8 @@ bool CutJudgement<D>::some_cut_pays() const {
   return best_cut(0, count / 2, count / kRoomShare).share <= kLargestCrossing;
 }
 
-template class CutJudgement<2>;
-template class CutJudgement<3>;
+#define SPILLWAY_INSTANTIATE(D) template class CutJudgement<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

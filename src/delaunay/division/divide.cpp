@@ -15,6 +15,7 @@
 #include "src/delaunay/division/least_border_rule.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 
 namespace spillway::delaunay {
@@ -272,9 +273,9 @@ class Divider {
     const auto points = points_.subspan(part.begin, part.size());
     const auto input_index = input_index_.subspan(part.begin, part.size());
     const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
-    // A base case is likely to follow, which in space needs memory for four numbers a point.
+    // A base case is likely to follow, which but in the plane needs memory for D + 1 numbers a point.
     constexpr std::size_t kBytesOfPoint =
-        D == 3 ? 4 * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
+        D > 2 ? (D + 1) * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
     const std::size_t bytes = (part.size() + 1) * kBytesOfPoint;
     BorrowedSlab memory(SlabUse::kPoints, bytes);
     auto* const old_points = static_cast<Point<D>*>(memory->reserve(bytes));
@@ -314,7 +315,9 @@ Part<D> divide(std::span<Point<D>> points, std::span<VertexId> input_index,
   return root;
 }
 
-template Part<2> divide<2>(std::span<Point<2>>, std::span<VertexId>, const DivideOptions&, Task*);
-template Part<3> divide<3>(std::span<Point<3>>, std::span<VertexId>, const DivideOptions&, Task*);
+#define SPILLWAY_INSTANTIATE(D) \
+  template Part<D> divide<D>(std::span<Point<D>>, std::span<VertexId>, const DivideOptions&, Task*);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "src/delaunay/common/tuning.h"
+#include "src/geometry/dimensions.h"
+
 namespace spillway::delaunay {
 
 template <int D>
@@ -31,7 +34,7 @@ double filled_share(std::span<const Point<D>> points, const Box<D>& box) {
 
 template <int D>
 std::vector<Point<D>> judged_sample(std::span<const Point<D>> points) {
-  std::vector<Point<D>> sample(std::min(kJudgedSample<D>, points.size()));
+  std::vector<Point<D>> sample(std::min(Tuning<D>::kJudgedSample, points.size()));
   for (std::size_t s = 0; s < sample.size(); ++s) {
     sample[s] = points[s * points.size() / sample.size()];
   }
@@ -44,11 +47,11 @@ bool is_hollow(std::span<const Point<D>> points, const Box<D>& box) {
   return filled_share<D>(judged_sample<D>(points), box) < kFilled;
 }
 
-template std::vector<Point<2>> judged_sample<2>(std::span<const Point<2>>);
-template std::vector<Point<3>> judged_sample<3>(std::span<const Point<3>>);
-template bool is_hollow<2>(std::span<const Point<2>>, const Box<2>&);
-template bool is_hollow<3>(std::span<const Point<3>>, const Box<3>&);
-template double filled_share<2>(std::span<const Point<2>>, const Box<2>&);
-template double filled_share<3>(std::span<const Point<3>>, const Box<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                               \
+  template std::vector<Point<D>> judged_sample<D>(std::span<const Point<D>>); \
+  template bool is_hollow<D>(std::span<const Point<D>>, const Box<D>&);       \
+  template double filled_share<D>(std::span<const Point<D>>, const Box<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

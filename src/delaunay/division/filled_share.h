@@ -15,11 +15,7 @@ namespace spillway::delaunay {
 template <int D>
 double filled_share(std::span<const Point<D>> points, const Box<D>& box);
 
-/// Points of a set that tell how it lies: which of two cuts is the better one by far, too.
-template <int D>
-inline constexpr std::size_t kJudgedSample = D == 2 ? 512 : 1'024;
-
-/// So many of some points, spread over them.
+/// Some of the points, spread over them, that tell how they lie: Tuning<D>::kJudgedSample.
 template <int D>
 std::vector<Point<D>> judged_sample(std::span<const Point<D>> points);
 

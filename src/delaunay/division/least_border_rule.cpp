@@ -5,6 +5,7 @@
 #include "src/delaunay/division/axis_rule.h"
 #include "src/delaunay/division/cut_judgement.h"
 #include "src/delaunay/division/filled_share.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::delaunay {
 namespace {
@@ -32,7 +33,8 @@ std::optional<Cut> LeastBorderRule<D>::choose(const PointsToCut<D>& points) cons
   return Cut{best.axis, value_at<D>(points.sample, best.axis, share)};
 }
 
-template class LeastBorderRule<2>;
-template class LeastBorderRule<3>;
+#define SPILLWAY_INSTANTIATE(D) template class LeastBorderRule<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

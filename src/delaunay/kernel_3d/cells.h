@@ -67,7 +67,8 @@ SPILLWAY_INLINE void load_from_slot(const Cell& cell, std::uint32_t slot, Words&
 class CellArray {
  public:
   /// Handles have 32 bits.
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 28;
+  using Record = Cell;
+  static constexpr std::size_t kMostRecords = std::size_t{1} << 28;
   static constexpr int kNumberShift = 4;  ///< of a handle, to the cell's number
 
   CellArray() = default;

@@ -156,11 +156,11 @@ bool Insertion<kHasOrderKeys>::conflicts(Handle first, VertexRef query) const {
 
 template <bool kHasOrderKeys>
 [[gnu::noinline, gnu::cold]] void Insertion<kHasOrderKeys>::grow_cells(std::size_t count) {
-  if (count > CellArray::kMaxCells) {
+  if (count > CellArray::kMostRecords) {
     throw Failure(
         fmt::format("a base case of {} points has more than {} cells, more than can be numbered; "
                     "choose smaller base cases",
-                    points_.count - 1, CellArray::kMaxCells),
+                    points_.count - 1, CellArray::kMostRecords),
         ErrorCode::kTooLarge);
   }
   cells_ = memory_.grow(count, cell_count_, forecast());
@@ -169,7 +169,7 @@ template <bool kHasOrderKeys>
 
 template <bool kHasOrderKeys>
 WorkForecast Insertion<kHasOrderKeys>::forecast() const {
-  return WorkForecast::of(before_, sample_, CellMemory::kBytesOfCell);
+  return WorkForecast::of(before_, sample_, CellMemory::kBytesOfRecord);
 }
 
 /// The half-spaces of the star's infinite cells. Those in conflict with the next point join the

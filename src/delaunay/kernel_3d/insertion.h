@@ -9,18 +9,20 @@
 #include <utility>
 #include <vector>
 
-#include "src/delaunay/kernel_3d/cell_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/spheres.h"
 #include "src/delaunay/kernel_3d/star_maker.h"
 #include "src/delaunay/kernel_3d/working_points.h"
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
+#include "src/delaunay/kernel_common/record_memory.h"
 
 /// For functions that use the 32 vector registers of AVX-512.
 #define SPILLWAY_TARGET_32_REGISTERS SPILLWAY_TARGET("avx2,bmi,bmi2,avx512f,avx512vl,avx512dq")
 
 namespace spillway::delaunay::kernel_3d {
+
+using CellMemory = kernel::RecordMemory<CellArray>;
 
 /// The cells of a hole, and the facets that are its boundary.
 struct HoleLists {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "src/delaunay/kernel_3d/cell_memory.h"
 #include "src/delaunay/kernel_3d/cells.h"
 #include "src/delaunay/kernel_3d/insertion.h"
 #include "src/delaunay/kernel_3d/spheres.h"

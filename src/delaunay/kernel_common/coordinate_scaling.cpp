@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "src/geometry/box.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::delaunay {
 namespace {
@@ -78,7 +79,8 @@ CoordinateScaling<D>::CoordinateScaling(std::span<const Point<D>> points) {
   for (int k = 0; k < D; ++k) extent_[k] = hi[k] - lo[k];
 }
 
-template class CoordinateScaling<2>;
-template class CoordinateScaling<3>;
+#define SPILLWAY_INSTANTIATE(D) template class CoordinateScaling<D>;
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

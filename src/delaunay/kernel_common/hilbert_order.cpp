@@ -11,6 +11,7 @@
 
 #include "src/delaunay/common/working_memory.h"
 #include "src/delaunay/kernel_common/lanes.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::delaunay {
 namespace {
@@ -20,9 +21,11 @@ using Lanes [[gnu::vector_size(16)]] = std::uint16_t;
 using SignedLanes [[gnu::vector_size(16)]] = std::int16_t;
 /// Their positions along the curve.
 using Keys [[gnu::vector_size(32)]] = std::uint32_t;
+/// Keys have two digits, of at most this many bits.
+constexpr int kWidestDigit = 13;
 constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(std::uint16_t);
 
-/// Adds bits, in space of 8 levels at most, to keys: D positions apart, the lowest one at `shift`.
+/// Adds bits, in space of 8 levels at most (D > 3: of 26 / D), to keys: D positions apart, the lowest one at `shift`.
 template <int D>
 SPILLWAY_INLINE void add_spread(const Lanes& bits, int shift, Keys& keys) {
   Keys x = __builtin_convertvector(bits, Keys);
@@ -31,6 +34,12 @@ SPILLWAY_INLINE void add_spread(const Lanes& bits, int shift, Keys& keys) {
     x = (x | x << 4) & 0x0F0F0F0F;
     x = (x | x << 2) & 0x33333333;
     x = (x | x << 1) & 0x55555555;
+  } else if constexpr (D > 3) {
+    const Keys narrow = x;
+    x = Keys{};
+    for (int level = 0; level < 2 * kWidestDigit / D; ++level) {
+      x |= (narrow >> level & 1) << (D * level);
+    }
   } else {
     x = (x | x << 8) & 0x0000F00F;
     x = (x | x << 4) & 0x000C30C3;
@@ -71,11 +80,13 @@ SPILLWAY_INLINE void hilbert_keys(const std::array<Lanes, 2>& cells, int /*level
   add_spread<2>(unlike, 0, keys);
 }
 
-/// The cells' numbers along the curve in space, of 8 levels at most (J. Skilling's algorithm).
-SPILLWAY_INLINE void hilbert_keys(std::array<Lanes, 3> cells, int levels, Keys& keys) {
+/// The cells' numbers along the curve in D > 2 dimensions, of 8 levels at most (J. Skilling,
+/// "Programming the Hilbert curve", AIP Conference Proceedings 707 (2004)).
+template <std::size_t D>
+SPILLWAY_INLINE void hilbert_keys(std::array<Lanes, D> cells, int levels, Keys& keys) {
   for (int level = levels - 1; level > 0; --level) {
     const auto below = static_cast<std::uint16_t>((1U << level) - 1);
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < D; ++k) {
       // Either the low bits of axis 0 are inverted, or exchanged with those of axis k.
       const Lanes set = (Lanes)((SignedLanes)(cells[k] << (15 - level)) >> 15);
       const Lanes exchange = (cells[0] ^ cells[k]) & (below & ~set);
@@ -83,11 +94,13 @@ SPILLWAY_INLINE void hilbert_keys(std::array<Lanes, 3> cells, int levels, Keys& 
       cells[k] ^= exchange;
     }
   }
-  for (int k = 1; k < 3; ++k) cells[k] ^= cells[k - 1];
-  Lanes turned = cells[2] >> 1;
+  for (std::size_t k = 1; k < D; ++k) cells[k] ^= cells[k - 1];
+  Lanes turned = cells[D - 1] >> 1;
   for (int shift = 1; shift < 8; shift *= 2) turned ^= turned >> shift;
   keys = Keys{};
-  for (int k = 0; k < 3; ++k) add_spread<3>(cells[k] ^ turned, 2 - k, keys);
+  for (std::size_t k = 0; k < D; ++k) {
+    add_spread<D>(cells[k] ^ turned, static_cast<int>(D - 1 - k), keys);
+  }
 }
 
 /// Sorts positions of points by their keys, stably.
@@ -114,8 +127,6 @@ class Sorter {
   /// A base case takes longer if a point has fewer cells than this; more do not help it. Of more
   /// than two million points, whose numbers leave less room for keys, crowded cells make up for it.
   static constexpr std::size_t kCellsOfPoint = 4;
-  /// Keys have two digits, of at most this many bits.
-  static constexpr int kWidestDigit = 13;
   /// Smaller boxes have no cells: how many there are in a unit of length could overflow.
   static constexpr double kSmallestExtent = 1e-300;
   /// Where there are more points, what is written lies outside of the fastest cache.
@@ -272,7 +283,9 @@ std::vector<VertexId> hilbert_order(std::span<const Point<D>> points, const Box<
   return Sorter<D>(points).sort(box);
 }
 
-template std::vector<VertexId> hilbert_order<2>(std::span<const Point<2>>, const Box<2>&);
-template std::vector<VertexId> hilbert_order<3>(std::span<const Point<3>>, const Box<3>&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template std::vector<VertexId> hilbert_order<D>(std::span<const Point<D>>, const Box<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::delaunay

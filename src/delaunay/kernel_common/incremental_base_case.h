@@ -1,6 +1,6 @@
 #pragma once
-// A base case of the own kernels, from the points to the list of simplices: what is the same in the
-// plane and in space.
+// A base case of the own kernels, from the points to the list of simplices: what is the same in all
+// dimensions.
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "src/delaunay/common/working_memory.h"
@@ -21,11 +22,22 @@
 
 namespace spillway::delaunay::kernel {
 
+/// Replaces a vertex, or each of four, by f(it).
+template <typename V, typename F>
+SPILLWAY_INLINE void set_each(V& v, const F& f) {
+  if constexpr (std::is_integral_v<V>) {
+    v = f(v);
+  } else {
+    for (int i = 0; i < 4; ++i) v[i] = f(v[i]);
+  }
+}
+
 /// Lists what an insertion has made: in the slab where its records lie, which it is done with, or
 /// in memory of its own. `usual` records are what there was room for at first.
 template <typename Traits, int D, typename Insertion>
 BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& insertion,
-                           const std::optional<Box<D>>& safe_box, std::size_t usual, Slab& memory) {
+                           const typename Traits::WorkingPoints& points, std::size_t usual,
+                           Slab& memory) {
   BaseCase<D> result;
   result.dimension = D;
   const std::uint32_t count = insertion.simplex_count();
@@ -37,10 +49,15 @@ BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& inser
     }
   }
   const auto list_as = [&](const auto& number, auto* made) {
-    list_simplices<D>(result, count, safe_box.has_value(),
+    list_simplices<D>(result, count, points.safe_box.has_value(),
                       [&](std::uint32_t begin, std::uint32_t end, ListingNotes<D>& notes) {
-                        list_range<Traits, D>(insertion.simplices(), begin, end, number, safe_box,
-                                              made, notes);
+                        if constexpr (D <= 3) {
+                          list_range<Traits, D>(insertion.simplices(), begin, end, number,
+                                                points.safe_box, made, notes);
+                        } else {
+                          list_range(insertion.simplices(), points, begin, end, number, made,
+                                     notes);
+                        }
                       });
   };
   const auto list = [&](const auto& number) {
@@ -56,12 +73,10 @@ BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& inser
   constexpr std::uint32_t kUnit = Traits::kVertexUnit;
   const VertexId shift = input.first_vertex - kFirstPoint;
   if (insertion.repetitions().empty()) {
-    list([shift](Words& v) { v = v / kUnit + shift; });
+    list([shift](auto& v) { v = v / kUnit + shift; });
   } else {
     const std::vector<VertexId> kept = choose_kept<D>(input, insertion.repetitions());
-    list([&](Words& v) {
-      for (int i = 0; i < 4; ++i) v[i] = kept[v[i] / kUnit] + shift;
-    });
+    list([&](auto& v) { set_each(v, [&](VertexId word) { return kept[word / kUnit] + shift; }); });
     result.duplicates = list_duplicates(insertion.repetitions(), kept, input.first_vertex);
   }
   return result;
@@ -77,8 +92,10 @@ BaseCase<D> list_base_case(const BaseCaseInput<D>& input, const Insertion& inser
 /// - `kVertexUnit`: records name a vertex by so many times its number;
 /// - `Insertion<bool>` into an array that array_in() makes of a slab, and by_variant(), which
 ///   calls a function with std::true_type or std::false_type, what points ask for;
-/// - least_gap_squared() of two spheres, records of four numbers: what the square of the distance
-///   from the computed centre to something must exceed if it is certainly beyond the true sphere.
+/// - up to three dimensions least_gap_squared() of two spheres, records of four numbers: what the
+///   square of the distance from the computed centre to something must exceed if it is certainly
+///   beyond the true sphere; in more a list_range() of its `Array`, which numbers vertices one by
+///   one.
 template <typename Traits>
 auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
                            std::span<const VertexId> basis) {
@@ -104,7 +121,7 @@ auto incremental_base_case(const BaseCaseInput<Traits::kDimension>& input,
         points, Traits::array_in(*records, usual, input.memory), first, lane_width());
     insert_in_rounds(insertion, count, basis, Traits::kRounds);
     if constexpr (requires { insertion.close_gaps(); }) insertion.close_gaps();
-    return list_base_case<Traits, kDimension>(input, insertion, points.safe_box, usual, *records);
+    return list_base_case<Traits, kDimension>(input, insertion, points, usual, *records);
   });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What incremental insertion has in common in the plane and in space: the numbers of its vertices,
+// What incremental insertion has in common in all dimensions: the numbers of its vertices,
 // the order in which points come, and what becomes of points that equal another.
 
 #include <algorithm>

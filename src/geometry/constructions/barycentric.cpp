@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/geometry/dimensions.h"
 #include "src/geometry/predicate_stages.h"
 
 namespace spillway::geometry {
@@ -10,9 +11,11 @@ namespace spillway::geometry {
 template <int D>
 std::array<double, D + 1> barycentric_coordinates(const std::array<Point<D>, D + 1>& simplex,
                                                   const Point<D>& place) {
-  // Each determinant is off by less than error_bound(), less than 2^-47 of the product of the
-  // extents: so a sum of at least 2^-8 of that gives shares to 2^-36.
+  // Each determinant is off by less than error_bound(), for D = 3 less than 2^-47 of the product of
+  // the extents: so a sum of at least 2^-8 of that gives shares to 2^-36. Where D > 3 the bound is
+  // larger, and the sum has to be.
   constexpr double kFlat = 0x1p-8;
+  constexpr double kLeastOverBound = D <= 3 ? 0 : 0x1p40;
   Vectors<D, D + 1, double> v;
   std::array<double, D> largest{};
   for (int i = 0; i <= D; ++i) {
@@ -25,7 +28,7 @@ std::array<double, D + 1> barycentric_coordinates(const std::array<Point<D>, D +
   bool safe = true;
   for (int k = 0; k < D; ++k) {
     extents *= largest[k];
-    safe = safe && largest[k] >= stages::kSmallestSafe && largest[k] <= stages::kLargestSafe;
+    safe = safe && largest[k] >= stages::kSmallestSafe<D> && largest[k] <= stages::kLargestSafe<D>;
   }
   auto weights = barycentric_determinants<D>(v);
   const double bound = stages::Orientation<D>::error_bound(largest);
@@ -35,14 +38,17 @@ std::array<double, D + 1> barycentric_coordinates(const std::array<Point<D>, D +
     safe = safe && std::abs(weight) > bound;
     sum += weight;
   }
-  if (!safe || !(sum >= kFlat * extents)) return exact_barycentric_coordinates<D>(simplex, place);
+  if (!safe || !(sum >= std::max(kFlat * extents, kLeastOverBound * bound))) {
+    return exact_barycentric_coordinates<D>(simplex, place);
+  }
   for (double& weight : weights) weight /= sum;
   return weights;
 }
 
-template std::array<double, 3> barycentric_coordinates<2>(const std::array<Point<2>, 3>&,
-                                                          const Point<2>&);
-template std::array<double, 4> barycentric_coordinates<3>(const std::array<Point<3>, 4>&,
-                                                          const Point<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                  \
+  template std::array<double, D + 1> barycentric_coordinates<D>( \
+      const std::array<Point<D>, D + 1>&, const Point<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

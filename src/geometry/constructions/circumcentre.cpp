@@ -4,6 +4,7 @@
 
 #include "src/geometry/constructions/circumsphere.h"
 #include "src/geometry/determinants.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::geometry {
 
@@ -19,7 +20,9 @@ Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex) {
   return centre;
 }
 
-template Point<2> circumcentre<2>(const std::array<Point<2>, 3>&);
-template Point<3> circumcentre<3>(const std::array<Point<3>, 4>&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template Point<D> circumcentre<D>(const std::array<Point<D>, D + 1>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

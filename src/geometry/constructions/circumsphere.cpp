@@ -5,16 +5,20 @@
 #include <cstring>
 
 #include "src/geometry/determinants.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::geometry {
 namespace {
 
 // The names are those of docs/algorithm-predicates.md ("Certified balls").
-constexpr double kRoundoff = 0x1p-53;      // u
-constexpr double kGamma = 16 * kRoundoff;  // above all relative errors of monomials
-constexpr double kUnderflow = 0x1p-700;    // above all that underflow can lose
-constexpr double kSmallestSafe = 0x1p-150;
-constexpr double kLargestSafe = 0x1p150;
+constexpr double kRoundoff = 0x1p-53;  // u
+template <int D>
+constexpr double kGamma = (D <= 3 ? 16 : 64) * kRoundoff;  // above all relative errors of monomials
+constexpr double kUnderflow = 0x1p-700;                    // above all that underflow can lose
+template <int D>
+constexpr double kSmallestSafe = D <= 3 ? 0x1p-150 : 0x1p-60;
+template <int D>
+constexpr double kLargestSafe = 1 / kSmallestSafe<D>;
 constexpr double kLargestCentre = 0x1p400;
 constexpr double kErrorSlack = 1 + 0x1p-40;   // for the roundings of the error bound itself
 constexpr double kRadiusSlack = 1 + 0x1p-48;  // 1 + 32u, for those of may_meet
@@ -74,6 +78,29 @@ Quotient<3> circumcentre(const Vectors<3, 3, double>& a) {
     if (i == 0) {
       for (int k = 0; k < 3; ++k) q.denominator += 2 * a[0][k] * cross[k];
     }
+  }
+  return q;
+}
+
+// Cramer's rule: the edges' rows are continued by their squared lengths.
+template <std::size_t D>
+requires(D > 3) Quotient<D> circumcentre(const std::array<std::array<double, D>, D>& a) {
+  Vectors<D + 1, D, double> rows;
+  Vectors<D + 1, D, double> sizes;
+  for (std::size_t i = 0; i < D; ++i) {
+    for (std::size_t k = 0; k < D; ++k) rows[i][k] = a[i][k];
+    rows[i][D] = squared_length(a[i]);
+    for (std::size_t k = 0; k <= D; ++k) sizes[i][k] = std::abs(rows[i][k]);
+  }
+  const auto values = minors(rows);
+  const auto magnitudes = minors<false>(sizes);
+  constexpr unsigned kAxes = (1U << D) - 1;
+  Quotient<D> q;
+  q.denominator = {2 * values[kAxes], 2 * magnitudes[kAxes]};
+  for (std::size_t k = 0; k < D; ++k) {
+    const unsigned replaced = (kAxes ^ 1U << k) | 1U << D;
+    q.numerator[k] = {(D - 1 - k) % 2 == 0 ? values[replaced] : -values[replaced],
+                      magnitudes[replaced]};
   }
   return q;
 }
@@ -315,16 +342,16 @@ CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex) {
   }
   const Quotient<D> q = circumcentre(edges);
   const double denominator = std::abs(q.denominator.value);
-  const double denominator_error = kGamma * q.denominator.magnitude + kUnderflow;
+  const double denominator_error = kGamma<D> * q.denominator.magnitude + kUnderflow;
   double numerator_error = 0;
   double farthest = 0;
   for (int k = 0; k < D; ++k) {
     ball.centre[k] = q.numerator[k].value / q.denominator.value;
-    numerator_error = std::max(numerator_error, kGamma * q.numerator[k].magnitude + kUnderflow);
+    numerator_error = std::max(numerator_error, kGamma<D> * q.numerator[k].magnitude + kUnderflow);
     farthest = std::max(farthest, std::abs(ball.centre[k]));
   }
   // Written so that NaN fails.
-  const bool proved = longest >= kSmallestSafe && longest <= kLargestSafe &&
+  const bool proved = longest >= kSmallestSafe<D> && longest <= kLargestSafe<D> &&
                       denominator > 2 * denominator_error && farthest <= kLargestCentre;
   if (!proved) return ball;
 
@@ -338,6 +365,21 @@ CertifiedBall<D> certified_ball(const std::array<Point<D>, D + 1>& simplex) {
   }
   ball.squared_radius = kRadiusSlack * squared_radius;
   return ball;
+}
+
+// Whether the ball certainly lies inside, and touches no side. Written so that NaN fails.
+template <int D>
+bool is_inside(const CertifiedBall<D>& ball, const Box<D>& box) {
+  constexpr double kRounding = 0x1p-50;
+  for (int k = 0; k < D; ++k) {
+    // Sides may be infinite.
+    const double error = ball.error + kRounding * std::abs(ball.centre[k]);
+    const double below = (ball.anchor[k] - box.lo[k]) * (1 - kRounding) + ball.centre[k];
+    const double above = (box.hi[k] - ball.anchor[k]) * (1 - kRounding) - ball.centre[k];
+    const double room = std::min(below, above) - error;
+    if (!(room > 0 && room * room > kMargin * ball.squared_radius)) return false;
+  }
+  return true;
 }
 
 template <int D>
@@ -354,21 +396,36 @@ template <int D>
 std::array<bool, SimplexBatch<D>::kSize> well_inside(const SimplexBatch<D>& simplices,
                                                      const Box<D>& box) {
   constexpr std::size_t kSize = SimplexBatch<D>::kSize;
-  std::array<double, kSize> room;
-  for (std::size_t s = 0; s < kSize; ++s) {
-    room[s] = room_around<D>(corners_in(simplices, s), box);
+  if constexpr (D > 3) {
+    std::array<bool, kSize> result;
+    for (std::size_t s = 0; s < kSize; ++s) {
+      result[s] = is_inside(certified_ball<D>(corners_in(simplices, s)), box);
+    }
+    return result;
+  } else {
+    std::array<double, kSize> room;
+    for (std::size_t s = 0; s < kSize; ++s) {
+      room[s] = room_around<D>(corners_in(simplices, s), box);
+    }
+    std::array<bool, kSize> result;
+    for (std::size_t s = 0; s < kSize; ++s) result[s] = room[s] > 0;
+    return result;
   }
-  std::array<bool, kSize> result;
-  for (std::size_t s = 0; s < kSize; ++s) result[s] = room[s] > 0;
-  return result;
 }
 
 template <int D>
 void certify(const SimplexBatch<D>& simplices, BallBatch<D>& balls) {
+  if constexpr (D > 3) {
+    for (std::size_t s = 0; s < SimplexBatch<D>::kSize; ++s) {
+      balls.set(s, certified_ball<D>(corners_in(simplices, s)));
+    }
+    return;
+  } else {
 #ifdef __x86_64__
-  if (has_avx2) return certify_with_avx2<D>(simplices, balls);
+    if (has_avx2) return certify_with_avx2<D>(simplices, balls);
 #endif
-  certify_all<D>(simplices, balls);
+    certify_all<D>(simplices, balls);
+  }
 }
 
 template <int D>
@@ -380,17 +437,14 @@ std::uint64_t may_meet(const BallBatch<D>& balls, const Box<D>& box, std::uint64
   return may_meet_in_lanes<D, 2>(balls, box, asked);
 }
 
-template CertifiedBall<2> certified_ball<2>(const std::array<Point<2>, 3>&);
-template CertifiedBall<3> certified_ball<3>(const std::array<Point<3>, 4>&);
-template bool may_meet<2>(const CertifiedBall<2>&, const Box<2>&);
-template bool may_meet<3>(const CertifiedBall<3>&, const Box<3>&);
-template std::array<bool, SimplexBatch<2>::kSize> well_inside<2>(const SimplexBatch<2>&,
-                                                                 const Box<2>&);
-template std::array<bool, SimplexBatch<3>::kSize> well_inside<3>(const SimplexBatch<3>&,
-                                                                 const Box<3>&);
-template void certify<2>(const SimplexBatch<2>&, BallBatch<2>&);
-template void certify<3>(const SimplexBatch<3>&, BallBatch<3>&);
-template std::uint64_t may_meet<2>(const BallBatch<2>&, const Box<2>&, std::uint64_t);
-template std::uint64_t may_meet<3>(const BallBatch<3>&, const Box<3>&, std::uint64_t);
+#define SPILLWAY_INSTANTIATE(D)                                                            \
+  template CertifiedBall<D> certified_ball<D>(const std::array<Point<D>, D + 1>&);         \
+  template bool may_meet<D>(const CertifiedBall<D>&, const Box<D>&);                       \
+  template std::array<bool, SimplexBatch<D>::kSize> well_inside<D>(const SimplexBatch<D>&, \
+                                                                   const Box<D>&);         \
+  template void certify<D>(const SimplexBatch<D>&, BallBatch<D>&);                         \
+  template std::uint64_t may_meet<D>(const BallBatch<D>&, const Box<D>&, std::uint64_t);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

@@ -18,7 +18,7 @@ namespace spillway::geometry {
 /// The circumsphere of a simplex with a bound on its rounding errors, kept relative to one of the
 /// simplex's own vertices so that large offsets cost no accuracy.
 template <int D>
-requires SupportedDimension<D>
+requires Dimension<D>
 struct CertifiedBall {
   Point<D> anchor;  ///< the simplex's first vertex: the origin of `centre`
   Point<D> centre;  ///< circumcentre minus anchor, rounded
@@ -75,6 +75,14 @@ struct BallBatch {
   /// Whether anything is certified of a ball.
   [[nodiscard]] bool certified(std::size_t ball) const {
     return error[ball] < std::numeric_limits<double>::infinity();
+  }
+  void set(std::size_t ball, const CertifiedBall<D>& value) {
+    for (int k = 0; k < D; ++k) {
+      anchor[k][ball] = value.anchor[k];
+      centre[k][ball] = value.centre[k];
+    }
+    squared_radius[ball] = value.squared_radius;
+    error[ball] = value.error;
   }
   [[nodiscard]] CertifiedBall<D> at(std::size_t ball) const {
     CertifiedBall<D> result;

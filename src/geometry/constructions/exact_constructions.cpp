@@ -9,6 +9,7 @@
 #include "src/geometry/constructions/barycentric.h"
 #include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/determinants.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/distance.h"
 
 namespace spillway::geometry {
@@ -94,13 +95,12 @@ std::array<double, D + 1> exact_barycentric_coordinates(const std::array<Point<D
   return coordinates;
 }
 
-template int distance_stages::exact<2>(const Point<2>&, const Point<2>&, const Point<2>&);
-template int distance_stages::exact<3>(const Point<3>&, const Point<3>&, const Point<3>&);
-template Point<2> exact_circumcentre<2>(const std::array<Point<2>, 3>&);
-template Point<3> exact_circumcentre<3>(const std::array<Point<3>, 4>&);
-template std::array<double, 3> exact_barycentric_coordinates<2>(const std::array<Point<2>, 3>&,
-                                                                const Point<2>&);
-template std::array<double, 4> exact_barycentric_coordinates<3>(const std::array<Point<3>, 4>&,
-                                                                const Point<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                                              \
+  template int distance_stages::exact<D>(const Point<D>&, const Point<D>&, const Point<D>&); \
+  template Point<D> exact_circumcentre<D>(const std::array<Point<D>, D + 1>&);               \
+  template std::array<double, D + 1> exact_barycentric_coordinates<D>(                       \
+      const std::array<Point<D>, D + 1>&, const Point<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

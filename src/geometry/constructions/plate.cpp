@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "src/geometry/dimensions.h"
+
 // With u half an ulp of 1, each result below has less than 32 roundings, of values that are at most
 // as large as what the bounds are multiplied with: 64 u are enough for all of them, and 2^-46 is
 // 128 u. Underflow is far below that, as kSmallest is added. A normal's length errs by less, too.
@@ -99,11 +101,11 @@ bool may_meet(const HalfSpace<D>& half_space, const Plate<D>& plate) {
   return !(beyond + error + reach * (1 + kError) < 0);
 }
 
-template struct Plate<2>;
-template struct Plate<3>;
-template bool may_meet<2>(const CertifiedBall<2>&, const Plate<2>&);
-template bool may_meet<3>(const CertifiedBall<3>&, const Plate<3>&);
-template bool may_meet<2>(const HalfSpace<2>&, const Plate<2>&);
-template bool may_meet<3>(const HalfSpace<3>&, const Plate<3>&);
+#define SPILLWAY_INSTANTIATE(D)                                        \
+  template struct Plate<D>;                                            \
+  template bool may_meet<D>(const CertifiedBall<D>&, const Plate<D>&); \
+  template bool may_meet<D>(const HalfSpace<D>&, const Plate<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::geometry

@@ -14,6 +14,7 @@
 #include "formats/meshes/common/divided_block.h"
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "stream/checker/checker.h"
 
 namespace spillway::stream {
@@ -55,7 +56,8 @@ FacetCounts count_facets(const Mesh& mesh) {
 }
 
 FacetCounts facets_of(const Mesh& mesh) {
-  return mesh.header.dimension == 2 ? count_facets<2>(mesh) : count_facets<3>(mesh);
+  return with_streamed_dimension(mesh.header.dimension,
+                                 [&](auto d) { return count_facets<d>(mesh); });
 }
 
 /// The vertices as a stream with this lattice has them. In the plane heights need not be on it;

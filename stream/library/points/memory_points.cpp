@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
@@ -91,8 +92,9 @@ std::optional<double> MemoryPoints<D>::fraction_read() const {
   return static_cast<double>(next_) / static_cast<double>(points_.size());
 }
 
-template class MemoryPoints<2>;
-template class MemoryPoints<3>;
+#define SPILLWAY_INSTANTIATE(D) template class MemoryPoints<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::ranks {
 namespace {
 
@@ -174,13 +176,12 @@ Border<D> unpack_border(Unpacker& message, bool with_index) {
   return border;
 }
 
-template void pack(Packer&, const TileNode<2>&);
-template void pack(Packer&, const TileNode<3>&);
-template TileNode<2> unpack_tile_node(Unpacker&);
-template TileNode<3> unpack_tile_node(Unpacker&);
-template void pack(Packer&, const Border<2>&, bool);
-template void pack(Packer&, const Border<3>&, bool);
-template Border<2> unpack_border(Unpacker&, bool);
-template Border<3> unpack_border(Unpacker&, bool);
+#define SPILLWAY_INSTANTIATE(D)                        \
+  template void pack(Packer&, const TileNode<D>&);     \
+  template TileNode<D> unpack_tile_node(Unpacker&);    \
+  template void pack(Packer&, const Border<D>&, bool); \
+  template Border<D> unpack_border(Unpacker&, bool);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -6,6 +6,7 @@
 
 #include "src/delaunay/common/hash.h"
 #include "src/distributed/items.h"
+#include "src/geometry/dimensions.h"
 #include "src/runtime/packing.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/tiles/cuts/sample_division.h"
@@ -124,7 +125,9 @@ DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& r
   return {std::move(division), std::move(kept)};
 }
 
-template DividedSample divide_among_ranks<2>(PieceTable&, const distributed::Ranks&);
-template DividedSample divide_among_ranks<3>(PieceTable&, const distributed::Ranks&);
+#define SPILLWAY_INSTANTIATE(D) \
+  template DividedSample divide_among_ranks<D>(PieceTable&, const distributed::Ranks&);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/geometry/dimensions.h"
+
 namespace spillway::ranks {
 namespace {
 
@@ -104,7 +106,8 @@ void OwnedVertices<D>::append_record(VertexId v, std::vector<std::byte>& attribu
   attributes.insert(attributes.end(), record, record + static_cast<std::ptrdiff_t>(size));
 }
 
-template class OwnedVertices<2>;
-template class OwnedVertices<3>;
+#define SPILLWAY_INSTANTIATE(D) template class OwnedVertices<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -9,6 +9,7 @@
 #include "src/delaunay/border/exposure.h"
 #include "src/delaunay/delaunay.h"
 #include "src/distributed/group.h"
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/packing.h"
 #include "src/runtime/work_lease.h"
@@ -310,7 +311,8 @@ void RankMerges<D>::keep(std::optional<SectionDraft> draft) {
   sections_.push_back(std::move(*draft));
 }
 
-template class RankMerges<2>;
-template class RankMerges<3>;
+#define SPILLWAY_INSTANTIATE(D) template class RankMerges<D>;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

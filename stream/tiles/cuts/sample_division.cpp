@@ -12,6 +12,7 @@
 #include "src/delaunay/division/cut_judgement.h"
 #include "src/delaunay/division/cut_rule.h"
 #include "src/geometry/box.h"
+#include "src/geometry/dimensions.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
 namespace spillway::stream {
@@ -177,16 +178,19 @@ std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std
 
 std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts,
                                        int dimension) {
-  return dimension == 2 ? divide_sample<2>(sample, parts) : divide_sample<3>(sample, parts);
+  return with_streamed_dimension(dimension,
+                                 [&](auto d) { return divide_sample<d>(sample, parts); });
 }
 
 std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
                                               std::size_t parts, int dimension) {
-  return dimension == 2 ? divide_longest_axes<2>(sample, parts)
-                        : divide_longest_axes<3>(sample, parts);
+  return with_streamed_dimension(dimension,
+                                 [&](auto d) { return divide_longest_axes<d>(sample, parts); });
 }
 
-template std::vector<DivisionCut> divide_sample<2>(std::span<const LatticePoint>, std::size_t);
-template std::vector<DivisionCut> divide_sample<3>(std::span<const LatticePoint>, std::size_t);
+#define SPILLWAY_INSTANTIATE(D) \
+  template std::vector<DivisionCut> divide_sample<D>(std::span<const LatticePoint>, std::size_t);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -5,6 +5,7 @@
 
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/delaunay.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -78,11 +79,11 @@ SampleMesh<D> triangulate_sample(std::span<const LatticePoint> sample, std::size
   return result;
 }
 
-template Point<2> mesh_point<2>(const LatticePoint&);
-template Point<3> mesh_point<3>(const LatticePoint&);
-template struct SampleMesh<2>;
-template struct SampleMesh<3>;
-template SampleMesh<2> triangulate_sample(std::span<const LatticePoint>, std::size_t);
-template SampleMesh<3> triangulate_sample(std::span<const LatticePoint>, std::size_t);
+#define SPILLWAY_INSTANTIATE(D)                         \
+  template Point<D> mesh_point<D>(const LatticePoint&); \
+  template struct SampleMesh<D>;                        \
+  template SampleMesh<D> triangulate_sample(std::span<const LatticePoint>, std::size_t);
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

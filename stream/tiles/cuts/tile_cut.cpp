@@ -7,6 +7,7 @@
 #include "src/delaunay/division/cut_judgement.h"
 #include "src/delaunay/division/cut_rule.h"
 #include "src/delaunay/division/filled_share.h"
+#include "src/geometry/dimensions.h"
 #include "stream/tiles/cuts/sample_mesh.h"
 
 namespace spillway::stream {
@@ -251,11 +252,12 @@ std::optional<Cut> cut_beside(const Box<3>& box, const LatticePoint& place, int 
 
 bool is_clearly_hollow(std::span<const LatticePoint> sample, int dimension) {
   if (sample.size() < kLeastToldSample) return false;
-  return (dimension == 2 ? filled_share_of<2>(sample) : filled_share_of<3>(sample)) < kHollow;
+  return with_streamed_dimension(dimension,
+                                 [&](auto d) { return filled_share_of<d>(sample) < kHollow; });
 }
 
 bool some_cut_pays(std::span<const LatticePoint> sample, int dimension) {
-  return dimension == 2 ? some_cut_pays_in<2>(sample) : some_cut_pays_in<3>(sample);
+  return with_streamed_dimension(dimension, [&](auto d) { return some_cut_pays_in<d>(sample); });
 }
 
 std::optional<Cut> choose_cut(const CrowdedTile& tile) {

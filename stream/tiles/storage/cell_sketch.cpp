@@ -6,6 +6,7 @@
 
 #include "src/delaunay/common/hash.h"
 #include "src/delaunay/kernel_common/hilbert_order.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 namespace {
@@ -256,7 +257,8 @@ PointSketch<D> CellSketch::sketch() const {
   return sketch;
 }
 
-template PointSketch<2> CellSketch::sketch<2>() const;
-template PointSketch<3> CellSketch::sketch<3>() const;
+#define SPILLWAY_INSTANTIATE(D) template PointSketch<D> CellSketch::sketch<D>() const;
+SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

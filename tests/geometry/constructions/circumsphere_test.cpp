@@ -69,7 +69,9 @@ std::array<Point<D>, D + 1> well_shaped(Random& random, double scale, double off
 
 template <typename Dimension>
 class CertifiedBallTest : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                    std::integral_constant<int, 4>, std::integral_constant<int, 5>,
+                                    std::integral_constant<int, 6>>;
 TYPED_TEST_SUITE(CertifiedBallTest, Dimensions);
 
 TYPED_TEST(CertifiedBallTest, BoundsHoldAgainstRationalArithmetic) {

@@ -18,7 +18,9 @@ namespace {
 
 template <typename Dimension>
 class ConstructionsTest : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                    std::integral_constant<int, 4>, std::integral_constant<int, 5>,
+                                    std::integral_constant<int, 6>>;
 TYPED_TEST_SUITE(ConstructionsTest, Dimensions);
 
 constexpr std::size_t kGroups = 60;  // exact rational arithmetic is slow

@@ -13,7 +13,9 @@ namespace {
 
 template <typename Dimension>
 class HalfSpaceTest : public ::testing::Test {};
-using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>,
+                                    std::integral_constant<int, 4>, std::integral_constant<int, 5>,
+                                    std::integral_constant<int, 6>>;
 TYPED_TEST_SUITE(HalfSpaceTest, Dimensions);
 
 template <int D>

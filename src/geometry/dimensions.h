@@ -1,0 +1,42 @@
+#pragma once
+// The one list of the dimensions for which templates are compiled.
+
+#include <type_traits>
+#include <utility>
+
+#include "src/rooms.h"
+
+/// Call a macro with each dimension: a source file ends with its instantiations.
+#define SPILLWAY_FOR_EACH_DIMENSION(INSTANTIATE) \
+  SPILLWAY_FOR_EACH_STREAMED_DIMENSION(INSTANTIATE) SPILLWAY_FOR_EACH_HIGHER_DIMENSION(INSTANTIATE)
+
+/// Those of points in streams, which have x, y and z.
+#define SPILLWAY_FOR_EACH_STREAMED_DIMENSION(INSTANTIATE) INSTANTIATE(2) INSTANTIATE(3)
+
+/// Those that share one kernel, and are triangulated in memory.
+#define SPILLWAY_FOR_EACH_HIGHER_DIMENSION(INSTANTIATE) INSTANTIATE(4) INSTANTIATE(5) INSTANTIATE(6)
+
+namespace spillway::geometry {
+
+#define SPILLWAY_CASE(D) \
+  case D:                \
+    return std::forward<F>(f)(std::integral_constant<int, D>{});
+
+/// f(d), where d is a dimension that is told at run time, as a std::integral_constant. It must be
+/// one of the list.
+template <typename F>
+decltype(auto) with_dimension(int dimension, F&& f) {
+  switch (dimension) { SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_CASE) }
+  __builtin_unreachable();
+}
+
+/// The same of a stream's dimension.
+template <typename F>
+decltype(auto) with_streamed_dimension(int dimension, F&& f) {
+  switch (dimension) { SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_CASE) }
+  __builtin_unreachable();
+}
+
+#undef SPILLWAY_CASE
+
+}  // namespace spillway::geometry
