@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "src/delaunay/kernel_common/lanes.h"
@@ -16,7 +17,11 @@ namespace spillway::delaunay::kernel_nd {
 template <int D>
 Insertion<D>::Insertion(const WorkingPoints<D>& points, SimplexMemory<D> memory,
                         const std::array<VertexId, D + 1>& first, int width)
-    : points_(points), memory_(memory), simplices_(memory_.first(D + 2)), width_(width) {
+    : points_(points),
+      memory_(memory),
+      simplices_(memory_.first(D + 2)),
+      width_(width),
+      star_vertices_(points.count) {
   capacity_ = memory_.capacity();
   start(first);
 }
@@ -54,6 +59,8 @@ void Insertion<D>::start(std::array<VertexId, D + 1> first) {
                       SimplexArray<D>::facet(b, slot_beside(b, a)));
     }
   }
+  star_vertices_.begin();
+  star_vertices_.add(kernel::kInfinite);
   make_star_powers();
 }
 
@@ -156,31 +163,41 @@ template <int D>
   }
 }
 
+/// Without a branch on what a test finds, which nobody could predict.
 template <int D>
 void Insertion<D>::find_hole(VertexId query, std::uint32_t first) {
   search_ += 2;
+  const double* const row = points_.row(query);
   hole_.assign(1, first);
-  boundary_.clear();
   simplices_.record(first).mark = search_;
-  for (std::size_t i = 0; i < hole_.size(); ++i) {
+  std::size_t count = 1;
+  std::size_t boundary_count = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    hole_.resize(std::max(hole_.size(), count + D + 1));
+    boundary_.resize(std::max(boundary_.size(), boundary_count + D + 1));
     const std::uint32_t number = hole_[i];
     const Record& simplex = simplices_.record(number);
     for (int slot = 0; slot <= D; ++slot) {
       const std::uint32_t beside = SimplexArray<D>::number(simplex.neighbours[slot]);
       Record& other = simplices_.record(beside);
-      if (other.mark == search_) continue;
-      if (other.mark != search_ + 1) {
-        if (is_in_conflict(other, query)) {
-          other.mark = search_;
-          hole_.push_back(beside);
-          for (const Facet next : other.neighbours) __builtin_prefetch(&simplices_.at(next));
-          continue;
+      if (other.mark < search_) {
+        const double value = other.power.value(row);
+        bool conflict = value < 0;
+        if (!(std::abs(value) > other.power.tolerance)) [[unlikely]] {
+          conflict = is_in_conflict_exactly(other, query);
         }
-        other.mark = search_ + 1;
+        hole_[count] = beside;
+        count += static_cast<std::size_t>(conflict);
+        other.mark = search_ + static_cast<std::uint32_t>(!conflict);
       }
-      boundary_.push_back(SimplexArray<D>::facet(number, slot));
+      const bool conflict = other.mark == search_;
+      boundary_[boundary_count] = SimplexArray<D>::facet(number, slot);
+      boundary_count += static_cast<std::size_t>(!conflict);
     }
+    if (i + 2 < count) prefetch_neighbours(hole_[i + 2]);
   }
+  hole_.resize(count);
+  boundary_.resize(boundary_count);
 }
 
 /// Numbers for the new simplices, and room for them.
@@ -204,25 +221,58 @@ void Insertion<D>::take_numbers(std::size_t count) {
   while (count_ < wanted) star_.push_back(count_++);
 }
 
-/// Makes the star's simplices, without their power functions, and joins them.
+/// Makes the star's simplices, without their power functions, and joins them to those around.
 template <int D>
 void Insertion<D>::fill_hole(VertexId query) {
-  ridges_.begin(boundary_.size());
+  star_vertices_.begin();
   for (std::size_t i = 0; i < boundary_.size(); ++i) {
     const Facet facet = boundary_[i];
     const int point_slot = SimplexArray<D>::slot(facet);
     const Record& inner = simplices_.at(facet);
-    const std::uint32_t number = star_[i];
-    Record& simplex = simplices_.record(number);
-    simplex.vertices = inner.vertices;
-    simplex.vertices[point_slot] = query;
+    Record& simplex = simplices_.record(star_[i]);
+    const auto& places = kSlotsToLast<D>[point_slot];
+    for (int slot = 0; slot < D; ++slot) {
+      const VertexId v = inner.vertices[places[slot]];
+      simplex.vertices[slot] = v;
+      star_vertices_.add(v);
+    }
+    simplex.vertices[D] = query;
     simplex.mark = 0;
-    simplices_.join(SimplexArray<D>::facet(number, point_slot), inner.neighbours[point_slot]);
-    for_each_ridge<D>(simplex.vertices, point_slot, [&](auto key, int slot) {
-      const Facet own = SimplexArray<D>::facet(number, slot);
-      const Facet other = ridges_.match(key, own);
-      if (other != RidgeTable<D>::kNone) simplices_.join(own, other);
+    simplices_.join(SimplexArray<D>::facet(star_[i], D), inner.neighbours[point_slot]);
+  }
+  join_star();
+}
+
+/// Joins the star's simplices to each other.
+template <int D>
+void Insertion<D>::join_star() {
+  const auto by_bits = [&]<typename Key>(RidgeTable<Key>& table) {
+    join_star(table, [&](const Record& simplex, const auto& visit) {
+      for_each_ridge<Key, D>(simplex.vertices, star_vertices_, visit);
     });
+  };
+  if (star_vertices_.count() <= 64) {
+    by_bits(ridges_);
+  } else if (star_vertices_.count() <= 128) {
+    by_bits(wide_ridges_);
+  } else {
+    join_star(wide_ridges_, [](const Record& simplex, const auto& visit) {
+      for_each_sorted_ridge<D>(simplex.vertices, visit);
+    });
+  }
+}
+
+template <int D>
+template <typename Table, typename ForEachRidge>
+SPILLWAY_INLINE void Insertion<D>::join_star(Table& table, const ForEachRidge& for_each) {
+  table.begin(D * star_.size());
+  for (const std::uint32_t number : star_) {
+    for_each(
+        simplices_.record(number), [&](auto key, int slot) __attribute__((always_inline)) {
+          // The first of two is its own neighbour until the other one comes.
+          const Facet own = SimplexArray<D>::facet(number, slot);
+          simplices_.join(own, table.match(key, own));
+        });
   }
 }
 
@@ -231,14 +281,14 @@ void Insertion<D>::make_star_powers() {
   if (width_ >= 4) {
     make_star_powers_by_4();
   } else {
-    make_powers<2, D>(points_, simplices_, star_);
+    make_powers<2, D>(points_, simplices_, star_, star_vertices_.has(kernel::kInfinite));
   }
 }
 
 template <int D>
 SPILLWAY_TARGET("avx2,bmi,bmi2")
 void Insertion<D>::make_star_powers_by_4() {
-  make_powers<4, D>(points_, simplices_, star_);
+  make_powers<4, D>(points_, simplices_, star_, star_vertices_.has(kernel::kInfinite));
 }
 
 template <int D>

@@ -60,8 +60,17 @@ class Insertion {
   [[nodiscard]] bool is_in_conflict_exactly(const Record& simplex, VertexId query) const;
   [[nodiscard]] int orientation_with(const Record& simplex, int slot, VertexId query) const;
   void find_hole(VertexId query, std::uint32_t first);
+  void prefetch_neighbours(std::uint32_t number) const {
+    for (const Facet next : simplices_.record(number).neighbours) {
+      __builtin_prefetch(&simplices_.at(next).power);
+      __builtin_prefetch(&simplices_.at(next).mark);
+    }
+  }
   void take_numbers(std::size_t count);
   void fill_hole(VertexId query);
+  void join_star();
+  template <typename Table, typename ForEachRidge>
+  void join_star(Table& table, const ForEachRidge& for_each);
   void make_star_powers();
   void make_star_powers_by_4();
   void free_hole();
@@ -75,14 +84,16 @@ class Insertion {
   std::uint32_t count_ = 0;  ///< of numbers, those that are free included
   SampleSize sample_{.points = D + 1, .simplices = D + 2};
   SampleSize before_ = sample_;  ///< the one before that
-  std::uint32_t search_ = 0;     ///< mark of conflicts; one more is that of those beside them
+  std::uint32_t search_ = 0;     ///< mark of those in the hole
   std::uint32_t hint_ = 0;       ///< a simplex near the next point
 
   std::vector<std::uint32_t> hole_;
   std::vector<Facet> boundary_;      ///< of the hole, as facets of its simplices
   std::vector<std::uint32_t> star_;  ///< the new simplices, one for each of these
   std::vector<std::uint32_t> free_;
-  RidgeTable<D> ridges_;
+  StarVertices star_vertices_;
+  RidgeTable<std::uint64_t> ridges_;
+  RidgeTable<Bits128> wide_ridges_;  ///< of stars with many vertices
   std::vector<kernel::Repetition> repetitions_;
 };
 

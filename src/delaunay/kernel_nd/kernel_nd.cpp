@@ -20,8 +20,7 @@ struct Traits {
   static constexpr int kDimension = D;
   static constexpr kernel::Rounds kRounds{.factor = 16, .first = 40};
   /// What keys of facets have room for.
-  static constexpr std::size_t kMostPoints =
-      (std::size_t{1} << std::min(RidgeTable<D>::kVertexBits, 29)) - 2;
+  static constexpr std::size_t kMostPoints = (std::size_t{1} << std::min(kVertexBits<D>, 29)) - 2;
   static constexpr std::uint32_t kVertexUnit = 1;
   using WorkingPoints = kernel_nd::WorkingPoints<D>;
   using Record = SimplexRecord<D>;

@@ -44,6 +44,24 @@ SPILLWAY_INLINE void raise_to_magnitude(R& most, const R& value) {
   most = most < size ? size : most;
 }
 
+/// The coordinates of the simplices' corners in a slot, by axis.
+template <int kLanes, int D>
+SPILLWAY_INLINE void load_corners(const WorkingPoints<D>& points,
+                                  const std::array<SimplexRecord<D>*, kLanes>& simplices, int slot,
+                                  Reals<kLanes>* coordinates) {
+  using R = Reals<kLanes>;
+  std::array<const double*, kLanes> rows;
+  for (int lane = 0; lane < kLanes; ++lane)
+    rows[lane] = points.row(simplices[lane]->vertices[slot]);
+  if constexpr (kLanes == 2) {
+    for (int k = 0; k < D; ++k) coordinates[k] = R{rows[0][k], rows[1][k]};
+  } else {
+    for (int lane = 0; lane < 4; ++lane) kernel::load(rows[lane], coordinates[lane]);
+    kernel::transpose(coordinates[0], coordinates[1], coordinates[2], coordinates[3]);
+    for (int k = 4; k < D; ++k) coordinates[k] = R{rows[0][k], rows[1][k], rows[2][k], rows[3][k]};
+  }
+}
+
 /// The functions of as many finite simplices as there are lanes; an infinite one among them gets
 /// something without a meaning.
 template <int kLanes, int D>
@@ -52,18 +70,11 @@ SPILLWAY_INLINE void make_sphere_powers(const WorkingPoints<D>& points,
   using R = Reals<kLanes>;
   std::array<R, D> anchor;
   std::array<std::array<R, D + 1>, D> rows;
-  const auto get = [&](int corner, int axis, R& values) __attribute__((always_inline)) {
-    std::array<double, kLanes> numbers;
-    for (int lane = 0; lane < kLanes; ++lane) {
-      numbers[lane] = points.row(simplices[lane]->vertices[corner])[axis];
-    }
-    kernel::load(numbers.data(), values);
-  };
-  for (int k = 0; k < D; ++k) get(0, k, anchor[k]);
+  load_corners<kLanes, D>(points, simplices, 0, anchor.data());
   std::array<R, D> widths{};
   for (int i = 0; i < D; ++i) {
+    load_corners<kLanes, D>(points, simplices, i + 1, rows[i].data());
     for (int k = 0; k < D; ++k) {
-      get(i + 1, k, rows[i][k]);
       rows[i][k] -= anchor[k];
       raise_to_magnitude(widths[k], rows[i][k]);
     }
@@ -93,11 +104,11 @@ SPILLWAY_INLINE void make_sphere_powers(const WorkingPoints<D>& points,
   R volume = widths[0];
   R squared_widths = widths[0] * widths[0];
   R narrowest = widths[0];
-  R least_share = widths[0] * (1 / points.extents[0]);
+  R least_share = widths[0] * points.inverse_extents[0];
   for (int k = 1; k < D; ++k) {
     volume *= widths[k];
     squared_widths += widths[k] * widths[k];
-    const R share = widths[k] * (1 / points.extents[k]);
+    const R share = widths[k] * points.inverse_extents[k];
     narrowest = widths[k] < narrowest ? widths[k] : narrowest;
     least_share = share < least_share ? share : least_share;
   }
@@ -170,16 +181,18 @@ void make_half_space_power(const WorkingPoints<D>& points, SimplexRecord<D>& sim
   power.tolerance = narrowest >= kShortestEdge ? as_tolerance(tolerance) : kProvesNothing;
 }
 
-/// The functions of new simplices, by their numbers.
+/// The functions of new simplices, by their numbers; `some_infinite` says whether there may be
+/// infinite ones.
 template <int kLanes, int D>
 SPILLWAY_INLINE void make_powers(const WorkingPoints<D>& points, const SimplexArray<D>& array,
-                                 std::span<const std::uint32_t> numbers) {
+                                 std::span<const std::uint32_t> numbers, bool some_infinite) {
   for (std::size_t i = 0; i < numbers.size(); i += kLanes) {
     std::array<SimplexRecord<D>*, kLanes> simplices;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       simplices[lane] = &array.record(numbers[std::min(i + lane, numbers.size() - 1)]);
     }
     make_sphere_powers<kLanes, D>(points, simplices);
+    if (!some_infinite) continue;
     for (SimplexRecord<D>* const simplex : simplices) {
       if (simplex->infinite()) make_half_space_power(points, *simplex);
     }

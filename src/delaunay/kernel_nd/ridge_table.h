@@ -1,4 +1,5 @@
 #pragma once
+// How the simplices of a star find their neighbours among each other.
 
 #include <algorithm>
 #include <array>
@@ -12,77 +13,121 @@
 
 namespace spillway::delaunay::kernel_nd {
 
-/// Finds the simplices of a star that are neighbours: a hash table of their facets that have the
-/// star's point, each by its other D - 1 vertices. Every facet is in just two simplices.
-template <int D>
+__extension__ using Bits128 = unsigned __int128;
+
+/// A hash table of the facets of a star's simplices that have the star's point, each by a key that
+/// names its other D - 1 vertices exactly and is not 0. Every one is a facet of just two simplices.
+template <typename Key>
 class RidgeTable {
  public:
-  __extension__ using Key = unsigned __int128;
-  /// Of a vertex in a key, which is exact.
-  static constexpr int kVertexBits = std::min(32, 128 / (D - 1));
-
-  static constexpr Facet kNone = ~Facet{0};
-
-  /// Begins a star of so many simplices.
-  void begin(std::size_t simplices) {
-    const std::size_t size = std::bit_ceil(D * simplices + 1);  // twice as many as there are facets
-    if (size > entries_.size()) entries_.assign(size, {});
-    mask_ = size - 1;
-    ++star_;
+  /// Begins a star that has so many of these facets, counted twice.
+  void begin(std::size_t facets) {
+    const std::size_t size = 2 * std::bit_ceil(facets + 1);  // at most a quarter of it will be full
+    if (size > keys_.size()) {
+      keys_.resize(size);
+      facets_.resize(size);
+    }
+    std::fill_n(keys_.begin(), size, 0);
+    shift_ = 64 - std::countr_zero(size);
   }
 
-  /// The facet that has the same vertices, or kNone; then this one will be found.
-  Facet match(Key key, Facet facet) {
-    std::size_t place = hash(key) & mask_;
-    while (entries_[place].star == star_) {
-      if (entries_[place].key == key) return entries_[place].facet;
-      place = (place + 1) & mask_;
+  /// The facet of this key that was given before, or, the first time, the same one. Without a
+  /// branch on that, which nobody could predict.
+  SPILLWAY_INLINE Facet match(Key key, Facet facet) {
+    std::uint64_t place = hash(key) >> shift_;
+    Key there = keys_[place];
+    while (static_cast<int>(there != 0) & static_cast<int>(there != key)) {
+      place = (place + 1) & (~std::uint64_t{0} >> shift_);
+      there = keys_[place];
     }
-    entries_[place] = {key, facet, star_};
-    return kNone;
+    const Facet known = -static_cast<Facet>(there == key);  // all bits, or none
+    const Facet other = (facets_[place] & known) | (facet & ~known);
+    keys_[place] = key;
+    facets_[place] = facet;
+    return other;
   }
 
  private:
-  struct Entry {
-    Key key = 0;
-    Facet facet = 0;
-    std::uint32_t star = 0;
-  };
-
-  static std::size_t hash(Key key) {
-    constexpr std::uint64_t kLow = 0x9E3779B97F4A7C15U;
-    constexpr std::uint64_t kHigh = 0xC2B2AE3D27D4EB4FU;
-    std::uint64_t h = static_cast<std::uint64_t>(key) * kLow;
-    h ^= std::rotl(static_cast<std::uint64_t>(key >> 64) * kHigh, 29);
-    h ^= h >> 32;
-    h *= kLow;
-    return h >> 29;
+  static std::uint64_t hash(Key key) {
+    constexpr std::uint64_t kFactor = 0x9E3779B97F4A7C15U;
+    auto h = static_cast<std::uint64_t>(key) * kFactor;
+    if constexpr (sizeof(Key) > sizeof h) {
+      h ^= std::rotl(static_cast<std::uint64_t>(key >> 64) * 0xC2B2AE3D27D4EB4FU, 29);
+    }
+    return h;
   }
 
-  std::vector<Entry> entries_;
-  std::size_t mask_ = 0;
-  std::uint32_t star_ = 0;
+  std::vector<Key> keys_;
+  std::vector<Facet> facets_;
+  int shift_ = 63;
 };
 
-/// Calls visit(key, slot) for each facet of a new simplex but that in `point_slot`, opposite to the
-/// star's point.
+/// Numbers the vertices of a star's boundary, from 0, so that sets of them are bits of a word.
+class StarVertices {
+ public:
+  explicit StarVertices(std::size_t vertices) : entries_(vertices) {}
+
+  void begin() {
+    ++star_;
+    count_ = 0;
+  }
+  void add(VertexId v) {
+    Entry& entry = entries_[v];
+    if (entry.star == star_) return;
+    entry = {star_, count_++};
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] bool has(VertexId v) const { return entries_[v].star == star_; }
+  /// Of a vertex that has been added.
+  [[nodiscard]] std::uint32_t number(VertexId v) const { return entries_[v].number; }
+
+ private:
+  struct Entry {
+    std::uint32_t star = 0;
+    std::uint32_t number = 0;
+  };
+
+  std::vector<Entry> entries_;
+  std::uint32_t star_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+/// Calls visit(key, slot) for each facet of a new simplex but the one opposite to the star's point,
+/// which is the last vertex. A key has a bit for each of the other vertices: there are at most as
+/// many as a Key has bits.
+template <typename Key, int D, typename Visit>
+SPILLWAY_INLINE void for_each_ridge(const std::array<VertexId, D + 1>& vertices,
+                                    const StarVertices& numbers, const Visit& visit) {
+  std::array<Key, D> bits;
+  Key all = 0;
+  for (int slot = 0; slot < D; ++slot) {
+    bits[slot] = Key{1} << numbers.number(vertices[slot]);
+    all |= bits[slot];
+  }
+  for (int slot = 0; slot < D; ++slot) visit(all ^ bits[slot], slot);
+}
+
+/// Bits of a vertex in a key of sorted vertices.
+template <int D>
+inline constexpr int kVertexBits = std::min(32, 128 / (D - 1));
+
+/// The same of any number of vertices. A key has their numbers, sorted.
 template <int D, typename Visit>
-SPILLWAY_INLINE void for_each_ridge(const std::array<VertexId, D + 1>& vertices, int point_slot,
-                                    const Visit& visit) {
-  using Table = RidgeTable<D>;
+SPILLWAY_INLINE void for_each_sorted_ridge(const std::array<VertexId, D + 1>& vertices,
+                                           const Visit& visit) {
   constexpr int kSlotBits = SimplexArray<D>::kNumberShift;
   std::array<std::uint32_t, D> sorted;
-  for (int slot = 0, n = 0; slot <= D; ++slot) {
-    if (slot == point_slot) continue;
+  for (int slot = 0; slot < D; ++slot) {
     const std::uint32_t word = vertices[slot] << kSlotBits | static_cast<std::uint32_t>(slot);
-    int place = n++;
+    int place = slot;
     for (; place > 0 && sorted[place - 1] > word; --place) sorted[place] = sorted[place - 1];
     sorted[place] = word;
   }
   for (int left_out = 0; left_out < D; ++left_out) {
-    typename Table::Key key = 0;
+    Bits128 key = 0;
     for (int i = 0; i < D; ++i) {
-      if (i != left_out) key = key << Table::kVertexBits | sorted[i] >> kSlotBits;
+      if (i != left_out) key = key << kVertexBits<D> | sorted[i] >> kSlotBits;
     }
     visit(key, static_cast<int>(sorted[left_out] & ((1U << kSlotBits) - 1)));
   }

@@ -1,10 +1,10 @@
 #pragma once
 // The simplices of a triangulation in more than three dimensions, as the kernel keeps them.
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
@@ -27,8 +27,15 @@ struct PowerFunction {
 
   /// `row` is that of a point: its coordinates and the sum of their squares.
   [[nodiscard]] SPILLWAY_INLINE double value(const double* row) const {
-    double sum = curvature * row[D];
-    for (int k = 0; k < D; ++k) sum += gradient[k] * row[k];
+    kernel::Reals<2> pairs{};
+    for (int k = 0; k + 1 < D; k += 2) {
+      kernel::Reals<2> slopes, coordinates;
+      kernel::load(&gradient[k], slopes);
+      kernel::load(row + k, coordinates);
+      pairs += slopes * coordinates;
+    }
+    double sum = (pairs[0] + pairs[1]) + curvature * row[D];
+    if constexpr (D % 2 != 0) sum += gradient[D - 1] * row[D - 1];
     return sum + constant;
   }
 };
@@ -43,13 +50,29 @@ struct SimplexRecord {
 
   static constexpr std::uint32_t kFree = ~std::uint32_t{0};
 
-  /// The slot of the infinite vertex, or D + 1.
-  [[nodiscard]] int infinite_slot() const {
-    return static_cast<int>(std::find(vertices.begin(), vertices.end(), kernel::kInfinite) -
-                            vertices.begin());
+  /// The slot of a vertex, or D + 1 if it has none.
+  [[nodiscard]] int slot_of(VertexId v) const {
+    int slot = 0;
+    while (slot <= D && vertices[slot] != v) ++slot;
+    return slot;
   }
+  [[nodiscard]] int infinite_slot() const { return slot_of(kernel::kInfinite); }
   [[nodiscard]] bool infinite() const { return infinite_slot() <= D; }
 };
+
+/// For each slot an even permutation of a simplex's vertices that ends with it.
+template <int D>
+inline constexpr auto kSlotsToLast = [] {
+  std::array<std::array<std::uint8_t, D + 1>, D + 1> places{};
+  for (int slot = 0; slot <= D; ++slot) {
+    for (int i = 0; i <= D; ++i) places[slot][i] = static_cast<std::uint8_t>(i);
+    if (slot == D) continue;
+    std::swap(places[slot][slot], places[slot][D]);
+    const int first = slot == 0 ? 1 : 0;  // two of the others
+    std::swap(places[slot][first], places[slot][slot == first + 1 ? first + 2 : first + 1]);
+  }
+  return places;
+}();
 
 /// Simplices by number.
 template <int D>

@@ -22,9 +22,11 @@ template <int D>
 struct WorkingPoints {
   using Row = std::array<double, D + 1>;  ///< coordinates, and the sum of their squares
 
+  std::size_t count = 0;      ///< of vertices, the infinite one among them
   const Row* rows = nullptr;  ///< by vertex; that of the infinite vertex is not a number
   const Point<D>* originals = nullptr;
   Point<D> extents{};                ///< by axis: no coordinate is larger
+  Point<D> inverse_extents{};        ///< 1 / extents, rounded
   std::optional<Box<D>> safe_box{};  ///< BaseCaseInput::safe_box, likewise
 
   [[nodiscard]] const double* row(VertexId v) const { return rows[v].data(); }
@@ -52,7 +54,8 @@ WorkingPoints<D> make_working_points(std::span<const Point<D>> points, Slab& mem
   auto* const rows =
       static_cast<Row*>(memory.reserve((points.size() + kernel::kFirstPoint) * sizeof(Row)));
   rows[kernel::kInfinite].fill(std::numeric_limits<double>::quiet_NaN());
-  WorkingPoints<D> working{.rows = rows, .originals = points.data()};
+  WorkingPoints<D> working{
+      .count = points.size() + kernel::kFirstPoint, .rows = rows, .originals = points.data()};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point<D> p = from_corner(scaling(points[i]));
     Row& row = rows[i + kernel::kFirstPoint];
@@ -60,6 +63,7 @@ WorkingPoints<D> make_working_points(std::span<const Point<D>> points, Slab& mem
     row[D] = squared_length(p);
     for (int k = 0; k < D; ++k) working.extents[k] = std::max(working.extents[k], p[k]);
   }
+  for (int k = 0; k < D; ++k) working.inverse_extents[k] = 1 / working.extents[k];
   if (safe_box) {
     const Box<D> box = scaling.inner_box(*safe_box);
     working.safe_box = Box<D>{from_corner(box.lo), from_corner(box.hi)};

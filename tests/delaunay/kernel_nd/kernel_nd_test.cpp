@@ -171,6 +171,22 @@ TYPED_TEST(KernelOfHigherDimension, EqualsCgalWithDuplicates) {
   EXPECT_TRUE(TestFixture::set_of_every_way(points) == cgal_simplices<D>(points));
 }
 
+/// A point in the midst of a sphere is a neighbour of all on it: the kernel has three ways to join
+/// stars of up to 64, up to 128 and more vertices.
+TYPED_TEST(KernelOfHigherDimension, EqualsCgalWhereStarsHaveManyVertices) {
+  constexpr int D = TypeParam::value;
+  for (const std::size_t count : {std::size_t{90}, std::size_t{D == 6 ? 130 : 300}}) {
+    SCOPED_TRACE(count);
+    Random random(8);
+    Points<D> points(count);
+    for (auto& p : points) p = on_sphere<D>(random);
+    for (int i = 0; i < 4; ++i) {
+      points.push_back(filled<D>([&] { return random.uniform(-1e-3, 1e-3); }));
+    }
+    EXPECT_TRUE(simplices_of(delaunay_triangulation<D>(points)) == cgal_simplices<D>(points));
+  }
+}
+
 TYPED_TEST(KernelOfHigherDimension, LatticesHaveOneTriangulationWhateverTheWayAndTheOrder) {
   constexpr int D = TypeParam::value;
   for (const std::int64_t side : {2, 3, 5}) {
