@@ -59,8 +59,7 @@ void Insertion<D>::start(std::array<VertexId, D + 1> first) {
                       SimplexArray<D>::facet(b, slot_beside(b, a)));
     }
   }
-  star_vertices_.begin();
-  star_vertices_.add(kernel::kInfinite);
+  star_on_hull_ = true;
   make_star_powers();
 }
 
@@ -194,7 +193,7 @@ void Insertion<D>::find_hole(VertexId query, std::uint32_t first) {
       boundary_[boundary_count] = SimplexArray<D>::facet(number, slot);
       boundary_count += static_cast<std::size_t>(!conflict);
     }
-    if (i + 2 < count) prefetch_neighbours(hole_[i + 2]);
+    if (i + kAhead < count) prefetch_neighbours(hole_[i + kAhead]);
   }
   hole_.resize(count);
   boundary_.resize(boundary_count);
@@ -225,6 +224,8 @@ void Insertion<D>::take_numbers(std::size_t count) {
 template <int D>
 void Insertion<D>::fill_hole(VertexId query) {
   star_vertices_.begin();
+  star_numbers_.resize(std::max(star_numbers_.size(), boundary_.size()));
+  star_on_hull_ = false;
   for (std::size_t i = 0; i < boundary_.size(); ++i) {
     const Facet facet = boundary_[i];
     const int point_slot = SimplexArray<D>::slot(facet);
@@ -234,7 +235,8 @@ void Insertion<D>::fill_hole(VertexId query) {
     for (int slot = 0; slot < D; ++slot) {
       const VertexId v = inner.vertices[places[slot]];
       simplex.vertices[slot] = v;
-      star_vertices_.add(v);
+      star_numbers_[i][slot] = star_vertices_.number(v);
+      star_on_hull_ |= v == kernel::kInfinite;
     }
     simplex.vertices[D] = query;
     simplex.mark = 0;
@@ -247,8 +249,8 @@ void Insertion<D>::fill_hole(VertexId query) {
 template <int D>
 void Insertion<D>::join_star() {
   const auto by_bits = [&]<typename Key>(RidgeTable<Key>& table) {
-    join_star(table, [&](const Record& simplex, const auto& visit) {
-      for_each_ridge<Key, D>(simplex.vertices, star_vertices_, visit);
+    join_star(table, [](const auto& numbers, const auto& visit) {
+      for_each_ridge<Key, D>(numbers, visit);
     });
   };
   if (star_vertices_.count() <= 64) {
@@ -256,8 +258,8 @@ void Insertion<D>::join_star() {
   } else if (star_vertices_.count() <= 128) {
     by_bits(wide_ridges_);
   } else {
-    join_star(wide_ridges_, [](const Record& simplex, const auto& visit) {
-      for_each_sorted_ridge<D>(simplex.vertices, visit);
+    join_star(wide_ridges_, [](const auto& numbers, const auto& visit) {
+      for_each_sorted_ridge<D>(numbers, visit);
     });
   }
 }
@@ -266,11 +268,11 @@ template <int D>
 template <typename Table, typename ForEachRidge>
 SPILLWAY_INLINE void Insertion<D>::join_star(Table& table, const ForEachRidge& for_each) {
   table.begin(D * star_.size());
-  for (const std::uint32_t number : star_) {
+  for (std::size_t i = 0; i < star_.size(); ++i) {
     for_each(
-        simplices_.record(number), [&](auto key, int slot) __attribute__((always_inline)) {
+        star_numbers_[i], [&](auto key, int slot) __attribute__((always_inline)) {
           // The first of two is its own neighbour until the other one comes.
-          const Facet own = SimplexArray<D>::facet(number, slot);
+          const Facet own = SimplexArray<D>::facet(star_[i], slot);
           simplices_.join(own, table.match(key, own));
         });
   }
@@ -281,14 +283,14 @@ void Insertion<D>::make_star_powers() {
   if (width_ >= 4) {
     make_star_powers_by_4();
   } else {
-    make_powers<2, D>(points_, simplices_, star_, star_vertices_.has(kernel::kInfinite));
+    make_powers<2, D>(points_, simplices_, star_, star_on_hull_);
   }
 }
 
 template <int D>
 SPILLWAY_TARGET("avx2,bmi,bmi2")
 void Insertion<D>::make_star_powers_by_4() {
-  make_powers<4, D>(points_, simplices_, star_, star_vertices_.has(kernel::kInfinite));
+  make_powers<4, D>(points_, simplices_, star_, star_on_hull_);
 }
 
 template <int D>

@@ -52,6 +52,8 @@ class Insertion {
  private:
   using Record = SimplexRecord<D>;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  /// Of a hole, what is beside its simplices is fetched so many ahead.
+  static constexpr std::size_t kAhead = 8;
 
   void start(std::array<VertexId, D + 1> first);
   std::uint32_t locate(VertexId query);
@@ -92,6 +94,8 @@ class Insertion {
   std::vector<std::uint32_t> star_;  ///< the new simplices, one for each of these
   std::vector<std::uint32_t> free_;
   StarVertices star_vertices_;
+  std::vector<std::array<std::uint32_t, D>> star_numbers_;  ///< of the vertices of each simplex
+  bool star_on_hull_ = false;                               ///< whether some are infinite
   RidgeTable<std::uint64_t> ridges_;
   RidgeTable<Bits128> wide_ridges_;  ///< of stars with many vertices
   std::vector<kernel::Repetition> repetitions_;

@@ -71,16 +71,14 @@ class StarVertices {
     ++star_;
     count_ = 0;
   }
-  void add(VertexId v) {
+  /// The number of a vertex, the next one if it has none yet.
+  std::uint32_t number(VertexId v) {
     Entry& entry = entries_[v];
-    if (entry.star == star_) return;
-    entry = {star_, count_++};
+    if (entry.star != star_) entry = {star_, count_++};
+    return entry.number;
   }
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  [[nodiscard]] bool has(VertexId v) const { return entries_[v].star == star_; }
-  /// Of a vertex that has been added.
-  [[nodiscard]] std::uint32_t number(VertexId v) const { return entries_[v].number; }
 
  private:
   struct Entry {
@@ -94,32 +92,28 @@ class StarVertices {
 };
 
 /// Calls visit(key, slot) for each facet of a new simplex but the one opposite to the star's point,
-/// which is the last vertex. A key has a bit for each of the other vertices: there are at most as
-/// many as a Key has bits.
+/// which is the last vertex. A key has a bit for each of the other vertices, whose numbers are
+/// given: they are less than a Key has bits.
 template <typename Key, int D, typename Visit>
-SPILLWAY_INLINE void for_each_ridge(const std::array<VertexId, D + 1>& vertices,
-                                    const StarVertices& numbers, const Visit& visit) {
-  std::array<Key, D> bits;
+SPILLWAY_INLINE void for_each_ridge(const std::array<std::uint32_t, D>& numbers,
+                                    const Visit& visit) {
   Key all = 0;
-  for (int slot = 0; slot < D; ++slot) {
-    bits[slot] = Key{1} << numbers.number(vertices[slot]);
-    all |= bits[slot];
-  }
-  for (int slot = 0; slot < D; ++slot) visit(all ^ bits[slot], slot);
+  for (const std::uint32_t number : numbers) all |= Key{1} << number;
+  for (int slot = 0; slot < D; ++slot) visit(all ^ Key{1} << numbers[slot], slot);
 }
 
-/// Bits of a vertex in a key of sorted vertices.
+/// Bits of a vertex in a key of sorted numbers.
 template <int D>
 inline constexpr int kVertexBits = std::min(32, 128 / (D - 1));
 
 /// The same of any number of vertices. A key has their numbers, sorted.
 template <int D, typename Visit>
-SPILLWAY_INLINE void for_each_sorted_ridge(const std::array<VertexId, D + 1>& vertices,
+SPILLWAY_INLINE void for_each_sorted_ridge(const std::array<std::uint32_t, D>& numbers,
                                            const Visit& visit) {
   constexpr int kSlotBits = SimplexArray<D>::kNumberShift;
   std::array<std::uint32_t, D> sorted;
   for (int slot = 0; slot < D; ++slot) {
-    const std::uint32_t word = vertices[slot] << kSlotBits | static_cast<std::uint32_t>(slot);
+    const std::uint32_t word = numbers[slot] << kSlotBits | static_cast<std::uint32_t>(slot);
     int place = slot;
     for (; place > 0 && sorted[place - 1] > word; --place) sorted[place] = sorted[place - 1];
     sorted[place] = word;
