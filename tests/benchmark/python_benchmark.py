@@ -77,6 +77,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--points-2d", type=int, default=1_000_000, metavar="N")
     parser.add_argument("--points-3d", type=int, default=300_000, metavar="N")
+    parser.add_argument("--higher", action="store_true", help="four to six dimensions instead")
     parser.add_argument("--places", type=int, default=200_000, metavar="N")
     parser.add_argument("--threads", type=int, default=2, metavar="N", help="of spillway")
     parser.add_argument("--turns", type=int, default=3, metavar="N")
@@ -87,7 +88,10 @@ def main():
         print(json.dumps(take_turn(library, *map(int, numbers))))
         return
     print("| | points | | SciPy | Spillway | ratio |\n|---|---|---|---|---|---|")
-    for dim, points in ((2, options.points_2d), (3, options.points_3d)):
+    sets = ((2, options.points_2d), (3, options.points_3d))
+    if options.higher:
+        sets = ((4, 20_000), (5, 2_000), (6, 500))
+    for dim, points in sets:
         turns = {"scipy": [], "spillway": []}
         for _ in range(options.turns):
             for library, figures in turns.items():
