@@ -142,8 +142,8 @@ TYPED_TEST(HigherDimension, InterpolationReproducesLinearFunctions) {
   };
   for (const auto& points : TestFixture::sets()) {
     const Delaunay<D> mesh(points);
-    std::vector<double> values;
-    for (const Point<D>& p : points) values.push_back(function(p));
+    std::vector<double> values(points.size());
+    std::ranges::transform(points, values.begin(), function);
     auto places = TestFixture::random_points(200, 5);
     for (auto& p : places) {
       for (double& c : p) c = 1 + (c - 1) / 10;  // most of them inside

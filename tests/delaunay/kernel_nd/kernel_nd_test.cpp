@@ -44,7 +44,7 @@ Simplices<D> simplices_of(const Triangulation<D>& t) {
   return simplices;
 }
 
-const std::vector<DivideAndConquerOptions> kWays = {
+const std::vector<DivideAndConquerOptions> all_ways = {
     {.threads = 1},
     {.threads = 2, .leaf_points = 12},
     {.threads = 2, .leaf_points = 30, .children = 4},
@@ -133,8 +133,8 @@ class KernelOfHigherDimension : public ::testing::Test {
 
   /// Every way gives the same set, and one that is right by itself. Returns it.
   static Simplices<kD> set_of_every_way(const Points<kD>& points) {
-    const Simplices<kD> first = simplices_of(delaunay_triangulation<kD>(points, kWays[0]));
-    for (const DivideAndConquerOptions& way : kWays) {
+    Simplices<kD> first = simplices_of(delaunay_triangulation<kD>(points, all_ways[0]));
+    for (const DivideAndConquerOptions& way : all_ways) {
       const Triangulation<kD> t = delaunay_triangulation<kD>(points, way);
       EXPECT_TRUE(simplices_of(t) == first) << "base cases of " << way.leaf_points;
       EXPECT_THAT(verify(t), ::testing::IsEmpty()) << "base cases of " << way.leaf_points;
@@ -151,7 +151,7 @@ TYPED_TEST(KernelOfHigherDimension, EqualsCgalOnPointsInGeneralPosition) {
   constexpr int D = TypeParam::value;
   for (const Family<D>& family : general_families<D>()) {
     for (const std::size_t count : {std::size_t{D + 1}, std::size_t{D + 2}, std::size_t{D + 3},
-                                    std::size_t{3 * D}, TestFixture::kMany}) {
+                                    std::size_t{3} * D, TestFixture::kMany}) {
       SCOPED_TRACE(family.name + ", " + std::to_string(count) + " points");
       const Points<D> points = TestFixture::points_of(family, count, 7 + count);
       EXPECT_TRUE(TestFixture::set_of_every_way(points) == cgal_simplices<D>(points));
@@ -166,7 +166,7 @@ TYPED_TEST(KernelOfHigherDimension, EqualsCgalWithDuplicates) {
   for (std::size_t i = 0, count = points.size(); i < count; ++i) {
     points.push_back(points[random.bits() % points.size()]);
   }
-  const Triangulation<D> t = delaunay_triangulation<D>(points, kWays[1]);
+  const Triangulation<D> t = delaunay_triangulation<D>(points, all_ways[1]);
   EXPECT_EQ(t.vertex_count(), TestFixture::kMany / 2);
   EXPECT_TRUE(TestFixture::set_of_every_way(points) == cgal_simplices<D>(points));
 }
@@ -242,7 +242,7 @@ TYPED_TEST(KernelOfHigherDimension, PointsOfFewerDimensionsHaveNoSimplices) {
         for (int j = 0; j < dimension; ++j) p[k] += (j + k) * p[j];
       }
     }
-    for (const DivideAndConquerOptions& way : kWays) {
+    for (const DivideAndConquerOptions& way : all_ways) {
       const auto t = delaunay_triangulation<D>(points, way);
       EXPECT_EQ(t.dimension, dimension);
       EXPECT_EQ(t.finite_count(), 0U);
