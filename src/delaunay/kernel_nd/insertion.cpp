@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "src/delaunay/kernel_common/lanes.h"
 #include "src/delaunay/kernel_nd/power_functions.h"
@@ -13,6 +16,23 @@
 #include "src/geometry/predicates.h"
 
 namespace spillway::delaunay::kernel_nd {
+namespace {
+
+/// For each slot an even permutation of a simplex's vertices that ends with it.
+template <int D>
+constexpr auto kSlotsToLast = [] {
+  std::array<std::array<std::uint8_t, D + 1>, D + 1> places{};
+  for (int slot = 0; slot <= D; ++slot) {
+    for (int i = 0; i <= D; ++i) places[slot][i] = static_cast<std::uint8_t>(i);
+    if (slot == D) continue;
+    std::swap(places[slot][slot], places[slot][D]);
+    const int first = slot == 0 ? 1 : 0;  // two of the others
+    std::swap(places[slot][first], places[slot][slot == first + 1 ? first + 2 : first + 1]);
+  }
+  return places;
+}();
+
+}  // namespace
 
 template <int D>
 Insertion<D>::Insertion(const WorkingPoints<D>& points, SimplexMemory<D> memory,

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "src/delaunay/kernel_common/insertion_rounds.h"
 #include "src/delaunay/kernel_common/lanes.h"
@@ -59,20 +58,6 @@ struct SimplexRecord {
   [[nodiscard]] int infinite_slot() const { return slot_of(kernel::kInfinite); }
   [[nodiscard]] bool infinite() const { return infinite_slot() <= D; }
 };
-
-/// For each slot an even permutation of a simplex's vertices that ends with it.
-template <int D>
-inline constexpr auto kSlotsToLast = [] {
-  std::array<std::array<std::uint8_t, D + 1>, D + 1> places{};
-  for (int slot = 0; slot <= D; ++slot) {
-    for (int i = 0; i <= D; ++i) places[slot][i] = static_cast<std::uint8_t>(i);
-    if (slot == D) continue;
-    std::swap(places[slot][slot], places[slot][D]);
-    const int first = slot == 0 ? 1 : 0;  // two of the others
-    std::swap(places[slot][first], places[slot][slot == first + 1 ? first + 2 : first + 1]);
-  }
-  return places;
-}();
 
 /// Simplices by number.
 template <int D>
