@@ -6,7 +6,8 @@
 
 namespace spillway {
 
-/// A triangle, tetrahedron or simplex of a mesh: a view of D+1 vertices and the neighbours opposite them.
+/// A triangle, tetrahedron or simplex of a mesh: a view of D+1 vertices and the neighbours opposite
+/// them.
 template <int D, class Index>
 struct Cell {
   std::span<const Index, D + 1> vertices;    ///< numbers of points, positively oriented

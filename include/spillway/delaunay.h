@@ -39,8 +39,9 @@ struct Duplicate {
 };
 
 /// The Delaunay triangulation of points in the plane (D = 2, cells are triangles), in space (D = 3,
-/// cells are tetrahedra) or in four to six dimensions (cells are simplices of D+1 vertices). A point
-/// that lies among others evenly has about 2, 7, 32, 190 or 1,300 cells; memory is needed for all.
+/// cells are tetrahedra) or in four to six dimensions (cells are simplices of D+1 vertices). A
+/// point that lies among others evenly has about 2, 7, 32, 190 or 1,300 cells; memory is needed for
+/// all.
 ///
 /// It is exact: no circumsphere of a cell has a point inside, without any tolerance. Where more
 /// than D+1 points lie on one sphere, and no other rule says which way to cut, symbolic
@@ -95,9 +96,9 @@ class Delaunay {
   [[nodiscard]] Cells<D, Index> cells() const { return {cell_vertices(), cell_neighbours()}; }
 
   /// The facets of the convex hull, D vertices each, seen from outside: an edge has the mesh on its
-  /// left, a triangle runs counter-clockwise; in general, with a point of the mesh that follows, the
-  /// orientation has the sign of (-1)^D. Points that lie in the midst of a side of the hull
-  /// are vertices of facets, too. Shape: number of facets * D.
+  /// left, a triangle runs counter-clockwise; in general, with a point of the mesh that follows,
+  /// the orientation has the sign of (-1)^D. Points that lie in the midst of a side of the hull are
+  /// vertices of facets, too. Shape: number of facets * D.
   [[nodiscard]] std::span<const Index> hull_facets() const;
 
   /// The cell that has the hull facet, by number of facet; ascending. Shape: number of facets.

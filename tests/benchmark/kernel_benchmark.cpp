@@ -1,5 +1,6 @@
-// The own kernels beside CGAL's Delaunay triangulations, in one process, in turns, on one core. Prints one Markdown table; times are the thread's processor time, medians over the turns,
-// and include the sorting of the points on both sides.
+// The own kernels beside CGAL's Delaunay triangulations, in one process, in turns, on one core.
+// Prints one Markdown table; times are the thread's processor time, medians over the turns, and
+// include the sorting of the points on both sides.
 
 #include <fmt/format.h>
 #include <malloc.h>

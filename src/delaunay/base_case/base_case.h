@@ -13,8 +13,8 @@ namespace spillway::delaunay {
 template <int D>
 BaseCase<D> triangulate_base_case(const BaseCaseInput<D>& input);
 
-/// A kernel for D <= 3: triangulates points that span D dimensions. `basis` has the places of D+1 affinely
-/// independent ones.
+/// A kernel for D <= 3: triangulates points that span D dimensions. `basis` has the places of D+1
+/// affinely independent ones.
 template <int D>
 BaseCase<D> cgal_base_case(const BaseCaseInput<D>& input, std::span<const VertexId> basis);
 

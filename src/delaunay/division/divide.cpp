@@ -273,7 +273,7 @@ class Divider {
     const auto points = points_.subspan(part.begin, part.size());
     const auto input_index = input_index_.subspan(part.begin, part.size());
     const std::vector<VertexId> order = hilbert_order<D>(points, part.box);
-    // A base case is likely to follow, which but in the plane needs memory for D + 1 numbers a point.
+    // A base case is likely to follow, which for D > 2 needs memory for D + 1 numbers a point.
     constexpr std::size_t kBytesOfPoint =
         D > 2 ? (D + 1) * sizeof(double) : sizeof(Point<D>) + sizeof(VertexId);
     const std::size_t bytes = (part.size() + 1) * kBytesOfPoint;

@@ -25,7 +25,8 @@ using Keys [[gnu::vector_size(32)]] = std::uint32_t;
 constexpr int kWidestDigit = 13;
 constexpr std::size_t kLanes = sizeof(Lanes) / sizeof(std::uint16_t);
 
-/// Adds bits, in space of 8 levels at most (D > 3: of 26 / D), to keys: D positions apart, the lowest one at `shift`.
+/// Adds bits, in space of 8 levels at most (D > 3: of 26 / D), to keys: D positions apart, the
+/// lowest one at `shift`.
 template <int D>
 SPILLWAY_INLINE void add_spread(const Lanes& bits, int shift, Keys& keys) {
   Keys x = __builtin_convertvector(bits, Keys);

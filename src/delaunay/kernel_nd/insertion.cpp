@@ -49,9 +49,7 @@ Insertion<D>::Insertion(const WorkingPoints<D>& points, SimplexMemory<D> memory,
 /// The first simplex, and an infinite one at each of its facets.
 template <int D>
 void Insertion<D>::start(std::array<VertexId, D + 1> first) {
-  std::array<Point<D>, D + 1> corners;
-  for (int i = 0; i <= D; ++i) corners[i] = points_.original(first[i]);
-  if (orientation<D>(corners) < 0) std::swap(first[0], first[1]);
+  if (orientation<D>(corners_of(first)) < 0) std::swap(first[0], first[1]);
   take_numbers(D + 2);
   for (int i = -1; i <= D; ++i) {
     Record& simplex = simplices_.record(i + 1);
@@ -65,18 +63,12 @@ void Insertion<D>::start(std::array<VertexId, D + 1> first) {
   // All have D of these D + 2 vertices in common: each lacks one that all others have.
   for (std::uint32_t a = 0; a < D + 2; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) {
-      const auto slot_beside = [&](std::uint32_t one, std::uint32_t other) {
-        const auto& vertices = simplices_.record(one).vertices;
-        const auto& others = simplices_.record(other).vertices;
-        return static_cast<int>(std::find_if(vertices.begin(), vertices.end(),
-                                             [&](VertexId v) {
-                                               return std::find(others.begin(), others.end(), v) ==
-                                                      others.end();
-                                             }) -
-                                vertices.begin());
+      const auto facet_beside = [&](std::uint32_t one, std::uint32_t other) {
+        int slot = 0;
+        while (simplices_.record(other).slot_of(simplices_.record(one).vertices[slot]) <= D) ++slot;
+        return SimplexArray<D>::facet(one, slot);
       };
-      simplices_.join(SimplexArray<D>::facet(a, slot_beside(a, b)),
-                      SimplexArray<D>::facet(b, slot_beside(b, a)));
+      simplices_.join(facet_beside(a, b), facet_beside(b, a));
     }
   }
   star_on_hull_ = true;
@@ -103,15 +95,22 @@ SPILLWAY_INLINE bool Insertion<D>::is_in_conflict(const Record& simplex, VertexI
   return is_in_conflict_exactly(simplex, query);
 }
 
+/// The points that the caller gave.
+template <int D>
+std::array<Point<D>, D + 1> Insertion<D>::corners_of(
+    const std::array<VertexId, D + 1>& vertices) const {
+  std::array<Point<D>, D + 1> corners;
+  for (int i = 0; i <= D; ++i) corners[i] = points_.original(vertices[i]);
+  return corners;
+}
+
 /// The sign of the orientation of a simplex with the query instead of the vertex in a slot, by
 /// exact predicates.
 template <int D>
 int Insertion<D>::orientation_with(const Record& simplex, int slot, VertexId query) const {
-  std::array<Point<D>, D + 1> corners;
-  for (int i = 0; i <= D; ++i) {
-    corners[i] = points_.original(i == slot ? query : simplex.vertices[i]);
-  }
-  return orientation<D>(corners);
+  std::array<VertexId, D + 1> vertices = simplex.vertices;
+  vertices[slot] = query;
+  return orientation<D>(corners_of(vertices));
 }
 
 template <int D>
@@ -122,9 +121,7 @@ template <int D>
     // In the hyperplane of the facet: in conflict if inside its sphere, as for the neighbour.
     return side != 0 ? side > 0 : is_in_conflict(simplices_.at(simplex.neighbours[slot]), query);
   }
-  std::array<Point<D>, D + 1> corners;
-  for (int i = 0; i <= D; ++i) corners[i] = points_.original(simplex.vertices[i]);
-  return in_sphere<D>(corners, points_.original(query)) > 0;
+  return in_sphere<D>(corners_of(simplex.vertices), points_.original(query)) > 0;
 }
 
 /// Finds a simplex in conflict with the query, or kNone if it equals a vertex; that is remembered.

@@ -60,6 +60,8 @@ class Insertion {
   std::uint32_t locate_exactly(VertexId query, std::uint32_t number);
   [[nodiscard]] bool is_in_conflict(const Record& simplex, VertexId query) const;
   [[nodiscard]] bool is_in_conflict_exactly(const Record& simplex, VertexId query) const;
+  [[nodiscard]] std::array<Point<D>, D + 1> corners_of(
+      const std::array<VertexId, D + 1>& vertices) const;
   [[nodiscard]] int orientation_with(const Record& simplex, int slot, VertexId query) const;
   void find_hole(VertexId query, std::uint32_t first);
   void prefetch_neighbours(std::uint32_t number) const {

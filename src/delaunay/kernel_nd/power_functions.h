@@ -35,8 +35,8 @@ SPILLWAY_INLINE float as_tolerance(double tolerance) {
                                                        : kProvesNothing;
 }
 
-/// Makes a value at least the magnitude of another; lanes are no results of functions, which not all
-/// processors could pass on.
+/// Makes a value at least the magnitude of another; lanes are no results of functions, which not
+/// all processors could pass on.
 template <typename R>
 SPILLWAY_INLINE void raise_to_magnitude(R& most, const R& value) {
   const R negative = -value;
