@@ -29,6 +29,19 @@ py::array row_of_numbers(std::vector<std::uint64_t> numbers) {
   return rows_of_numbers(std::move(numbers), 1).reshape({-1});
 }
 
+/// The vertices as rows of all their coordinates: those beyond z are taken out of the attributes.
+py::array rows_of_vertices(MeshBlock& block, const MeshHeader& header, py::dict& attributes) {
+  py::array rows = array_of(std::move(block.vertices));
+  if (header.dimension <= 3) return rows;
+  py::list columns;
+  columns.append(rows);
+  for (int axis = 3; axis < header.dimension; ++axis) {
+    const py::str name(header.attributes[static_cast<std::size_t>(axis) - 3].name);
+    columns.append(attributes.attr("pop")(name));
+  }
+  return py::module_::import("numpy").attr("column_stack")(columns);
+}
+
 /// A block as (first_vertex, vertices, simplices, finalized, input_index, attributes), or None at
 /// the end.
 py::object next_block(BlockStream& stream) {
@@ -37,10 +50,11 @@ py::object next_block(BlockStream& stream) {
   const MeshHeader& header = stream.header();
   py::object index = py::none();
   if (header.has_input_index) index = row_of_numbers(std::move(block->input_index));
-  return py::make_tuple(block->first_vertex, array_of(std::move(block->vertices)),
+  py::dict attributes = arrays_of(std::move(block->attributes));
+  const py::array vertices = rows_of_vertices(*block, header, attributes);
+  return py::make_tuple(block->first_vertex, vertices,
                         rows_of_numbers(std::move(block->corners), header.dimension + 1),
-                        row_of_numbers(std::move(block->finalized)), index,
-                        arrays_of(std::move(block->attributes)));
+                        row_of_numbers(std::move(block->finalized)), index, attributes);
 }
 
 }  // namespace

@@ -31,10 +31,18 @@ class PointsInSystem final : public PointSource {
 };
 
 std::unique_ptr<PointSource> open_array(const Coordinates& rows, AttributeColumns attributes) {
-  if (rows.ndim() == 2 && rows.shape(1) == 2) {
-    return points_in_memory(point_view<2>(rows), std::move(attributes));
+  switch (rows.ndim() == 2 ? rows.shape(1) : 0) {
+    case 2:
+      return points_in_memory(point_view<2>(rows), std::move(attributes));
+    case 4:
+      return points_in_memory(point_view<4>(rows), std::move(attributes));
+    case 5:
+      return points_in_memory(point_view<5>(rows), std::move(attributes));
+    case 6:
+      return points_in_memory(point_view<6>(rows), std::move(attributes));
+    default:
+      return points_in_memory(point_view<3>(rows), std::move(attributes));
   }
-  return points_in_memory(point_view<3>(rows), std::move(attributes));
 }
 
 }  // namespace

@@ -147,7 +147,11 @@ py::array_t<double> generate_in_memory(Run& run, const GenerateOptions& options)
     const auto points = generate_points(options);
     convert(*points, rows, run.context());
   });
-  return rows.take();
+  if (options.dimension <= 3) return rows.take();
+  py::list columns;
+  columns.append(rows.take());
+  for (const auto& [name, numbers] : rows.take_attributes()) columns.append(numbers);
+  return py::module_::import("numpy").attr("column_stack")(columns);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options
   statistics["points"] = info.tells_totals ? py::object(py::int_(totals.points)) : py::none();
   statistics["duplicates"] =
       info.tells_totals ? py::object(py::int_(totals.duplicates)) : py::none();
-  statistics["extent"] = extent_of(info.extent);
+  statistics["extent"] = extent_of(info.extent, info.further_extent);
   add_lattice(info.lattice, statistics);
   statistics["input_index"] = info.has_input_index;
   statistics["crs"] = text_or_none(info.crs);

@@ -109,9 +109,16 @@ py::list statistics_of(const std::vector<Attribute>& attributes) {
   return all;
 }
 
-py::object extent_of(const std::optional<Extent>& extent) {
+py::object extent_of(const std::optional<Extent>& extent,
+                     std::span<const std::array<double, 2>> further) {
   if (!extent) return py::none();
-  return py::make_tuple(triple_of(extent->low), triple_of(extent->high));
+  py::object low = triple_of(extent->low);
+  py::object high = triple_of(extent->high);
+  for (const auto& [least, largest] : further) {
+    low = low + py::make_tuple(least);
+    high = high + py::make_tuple(largest);
+  }
+  return py::make_tuple(low, high);
 }
 
 py::tuple triple_of(const std::array<double, 3>& axes) {

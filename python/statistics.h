@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace spillway::python {
@@ -23,8 +24,9 @@ pybind11::list statistics_of(const std::vector<SkippedFile>& files);
 /// As the JSON of `spillway info`: what says nothing is left out.
 pybind11::list statistics_of(const std::vector<Attribute>& attributes);
 
-/// (lowest, highest corner), or None.
-pybind11::object extent_of(const std::optional<Extent>& extent);
+/// (lowest, highest corner), or None. `further`: the ranges of coordinates beyond z.
+pybind11::object extent_of(const std::optional<Extent>& extent,
+                           std::span<const std::array<double, 2>> further = {});
 
 /// One number for each axis.
 pybind11::tuple triple_of(const std::array<double, 3>& axes);

@@ -47,6 +47,8 @@ bool needs_extent(const RunSink& sink, int dimension) {
 Trust trust_in(PointStream& source, int dimension, const RunSetup& setup) {
   const EngineOptions& options = setup.options;
   if (!options.asked.trust_headers || source.regions().empty()) return {};
+  // Headers do not tell where points lie along axes beyond z.
+  if (further_axes(dimension) > 0) return {};
   std::size_t capacity = options.asked.tile_points;
   if (capacity == 0) {
     const MemoryPlan memory = plan_memory(setup.budget.limit(), dimension, options.threads,
@@ -145,7 +147,7 @@ class RunHere final : public RunPhases<D> {
   }
 
   void check_extent() {
-    const Box<2>& seen = engine().seen_extent();
+    const Box<2> seen = plane_of(engine().seen_extent());
     if (*trust_.extent == seen || this->setup().sink.extent_holds(seen)) return;
     throw FalseHeader(
         Failure("the points cannot be read again, and headers tell another extent than theirs",
@@ -261,7 +263,7 @@ void refuse_empty_mesh(const RunStatistics& statistics, const std::optional<doub
 
 #define SPILLWAY_INSTANTIATE(D) \
   template RunStatistics triangulate_stream<D>(PointStream&, BlockSink&, const RunSetup&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

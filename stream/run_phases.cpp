@@ -33,7 +33,7 @@ void RunPhases<D>::begin(RunPhase next) {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class RunPhases<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -37,6 +37,8 @@ class ColumnReader {
   /// Takes all that is left as the byte planes of so many records, at least one.
   void read_byte_planes(std::size_t count, std::vector<std::byte>& records);
 
+  /// What is left.
+  [[nodiscard]] std::span<const std::byte> left() const { return left_; }
   /// Throws Failure if anything is left.
   void expect_end() const;
 

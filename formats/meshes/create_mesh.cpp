@@ -6,16 +6,20 @@
 
 #include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
+#include "src/geometry/simplex_name.h"
 
 namespace spillway::formats {
 namespace {
 
 /// Throws InvalidArgument if the format cannot hold the mesh.
 void check_holds(const MeshFormat& format, const std::string& path, const MeshContents& contents) {
-  if (contents.dimension != 2 && !format.holds_tetrahedra) {
-    const auto hold = [](const MeshFormat& other) { return other.holds_tetrahedra; };
-    throw InvalidArgument(fmt::format("cannot write {}: {} holds no tetrahedra; choose {}", path,
-                                      format.title, list_of_formats(hold, "or")),
+  if (contents.dimension > format.most_dimension) {
+    const bool in_space = contents.dimension == 3;
+    const auto hold = in_space ? +[](const MeshFormat& other) { return other.most_dimension >= 3; }
+                               : +[](const MeshFormat& other) { return other.most_dimension > 3; };
+    throw InvalidArgument(fmt::format("cannot write {}: {} holds no {}; choose {}", path,
+                                      format.title, simplices_text(contents.dimension),
+                                      list_of_formats(hold, "or")),
                           {.file = path});
   }
   if (contents.has_input_index && !format.holds_input_index) {

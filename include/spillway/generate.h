@@ -18,7 +18,8 @@ SPILLWAY_API std::vector<std::string> point_families();
 struct GenerateOptions {
   std::string family = "uniform";  ///< one of point_families()
   std::uint64_t count = 0;
-  int dimension = 2;  ///< 2 or 3; terrain and scan always have z
+  int dimension = 2;  ///< 2 to 6; terrain, packing and scan: 2 or 3, of which the first and the
+                      ///< last always have z
   std::uint64_t seed = 1;
 };
 

@@ -59,6 +59,8 @@ struct MeshInfo {
   MeshTotals totals{};        ///< counted
   bool tells_totals = false;  ///< the file tells points, duplicates and hash
   std::optional<Extent> extent{};
+  /// Least and largest coordinate on each axis beyond z.
+  std::vector<std::array<double, 2>> further_extent{};
   std::optional<LatticeInfo> lattice{};
   std::string crs{};
   /// The most vertices that a reader holds at a time, of formats of streams.

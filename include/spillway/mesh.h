@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct OwnParts;
 
 /// What is known of a mesh before its first block. What is said must be right.
 struct MeshHeader {
-  int dimension = 2;                      ///< 2: triangles with z carried along, 3: tetrahedra
+  int dimension = 2;                      ///< 2: triangles with z carried along, 3: tetrahedra; to 6
   bool has_input_index = false;           ///< vertices carry their index in the input
   std::optional<std::uint64_t> points{};  ///< of the input
   std::optional<Extent> extent{};         ///< a box around the points
@@ -34,7 +35,8 @@ struct MeshHeader {
   /// On which x and y of all vertices lie and, in space, z. In the plane z may lie between its
   /// steps, as means of heights do.
   std::optional<Lattice> lattice{};
-  /// What vertices carry of the points that they are.
+  /// What vertices carry of the points that they are. The first dimension - 3 are coordinates beyond
+  /// z: x4, x5, x6, a float64 each.
   std::vector<Attribute> attributes{};
 };
 
@@ -146,12 +148,28 @@ class SPILLWAY_API MeshInMemory : public MeshSink {
   [[nodiscard]] const std::vector<Point<3>>& vertices() const { return vertices_; }
   /// Shape: as vertices, or none.
   [[nodiscard]] const std::vector<std::uint64_t>& input_index() const { return input_index_; }
+  /// All coordinates of the vertices of a mesh of D dimensions, of z too where D is 3. Shape:
+  /// totals().vertices. Throws Error(kInvalidArgument) if the mesh has no coordinates beyond z.
+  template <int D>
+  requires(D >= 3 && D <= 6) [[nodiscard]] std::vector<Point<D>> coordinates() const {
+    std::vector<Point<D>> all(vertices_.size());
+    for (std::size_t v = 0; v < all.size(); ++v) {
+      for (int k = 0; k < 3; ++k) all[v][k] = vertices_[v][k];
+    }
+    for (int k = 3; k < D; ++k) {
+      const std::span<const double> column = coordinate_column(k);
+      for (std::size_t v = 0; v < all.size(); ++v) all[v][k] = column[v];
+    }
+    return all;
+  }
   /// Vertices of all simplices. Shape: totals().simplices * (header().dimension + 1).
   [[nodiscard]] const std::vector<std::uint64_t>& corners() const { return corners_; }
   /// Of the vertices: those of the header.
   [[nodiscard]] const AttributeColumns& attributes() const { return attributes_; }
 
  private:
+  [[nodiscard]] std::span<const double> coordinate_column(int axis) const;
+
   std::vector<std::string> wanted_;
   MeshHeader header_;
   MeshTotals totals_;

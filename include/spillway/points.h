@@ -83,7 +83,9 @@ struct Returns {
 
 /// Which points of files are used, and how these are read. Filters apply in the order of members.
 struct PointOptions {
-  int dimension = 2;     ///< in which they will be triangulated: 2 or 3; 0: they will not be
+  /// In which they will be triangulated, 2 to 6; 0: they will not be. Coordinates beyond z are
+  /// attributes called x4, x5 and x6, or the columns of an npy array without names.
+  int dimension = 2;
   std::string format{};  ///< "las", "text", ... ; empty: by first bytes and name
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
@@ -134,17 +136,29 @@ SPILLWAY_API std::unique_ptr<PointSource> open_points(const std::vector<std::str
                                                       const Context& context);
 
 /// Points as they lie in a program's memory, which must stay there while they are read, and what
-/// they carry, which the source keeps. Throws Error(kInvalidArgument) for attributes of another
-/// number of points.
+/// they carry, which the source keeps. Coordinates beyond z come as attributes called x4, x5 and x6.
+/// Throws Error(kInvalidArgument) for attributes of another number of points, or of such a name.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points,
                                                            AttributeColumns attributes = {});
 /// The same without z.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<2> points,
                                                            AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<4> points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<5> points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<6> points,
+                                                           AttributeColumns attributes = {});
 /// Points that the source keeps: for those that nobody else does. Throws likewise.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points,
                                                            AttributeColumns attributes = {});
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<4>>&& points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<5>>&& points,
+                                                           AttributeColumns attributes = {});
+SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(std::vector<Point<6>>&& points,
                                                            AttributeColumns attributes = {});
 
 /// What takes points. All calls come one at a time: begin() once, write() for each block, and

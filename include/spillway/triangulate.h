@@ -22,7 +22,7 @@ class RunTrace;
 /// What is made. Only the first four members change the mesh; the others change the order in which
 /// it comes, and how fast.
 struct TriangulateOptions {
-  int dimension = 2;                  ///< 2: triangles over x, y; 3: tetrahedra
+  int dimension = 2;                  ///< 2: triangles over x, y; 3: tetrahedra; up to 6: simplices
   Heights heights = Heights::kFirst;  ///< dimension 2
   std::optional<double> max_edge{};   ///< leave out simplices with a longer edge
   bool input_index = false;           ///< vertices carry their index in the input

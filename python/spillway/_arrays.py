@@ -117,7 +117,7 @@ def _as_attribute(values: Any, name: str, count: int) -> NDArray[Any]:
 def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     """Coordinates as rows of two to six, and the heights that points in the plane carry."""
     array = as_rows(points, "points", 6)
-    if dim is not None and not (np.ndim(dim) == 0 and dim in range(2, 7)):
+    if dim is not None and not is_dimension(dim):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2 to 6 or None")
     columns = array.shape[1]
     if dim is None or dim == columns:
@@ -133,9 +133,9 @@ def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     return array[:, :2], frozen(z)
 
 
-def is_dimension(dim: Any) -> bool:
-    """Whether this is 2 or 3."""
-    return np.ndim(dim) == 0 and dim in (2, 3)
+def is_dimension(dim: Any, most: int = 6) -> bool:
+    """Whether this is 2, 3, ... or the most."""
+    return np.ndim(dim) == 0 and dim in range(2, most + 1)
 
 
 def as_places(places: Any, ndim: int) -> Floats:

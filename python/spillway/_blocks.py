@@ -31,7 +31,8 @@ class Block(NamedTuple):
     first_vertex: int
     """The number of the first of `vertices`."""
     vertices: Floats
-    """Those that come for the first time, shape (n, 3); of points without z this is 0."""
+    """Those that come for the first time, shape (n, 3), of more dimensions (n, dim); of points without z
+    this is 0."""
     simplices: NDArray[np.int64]
     """Numbers of vertices, positively oriented, shape (m, dim + 1)."""
     finalized: NDArray[np.int64]
@@ -110,10 +111,10 @@ def blocks(
 
     Parameters
     ----------
-    inputs : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
+    inputs : path, sequence of paths, or array_like of shape (n, 2) to (n, 6)
         Points, as `triangulate` takes them, or one file of a mesh.
-    dim : {2, 3}, optional
-        2: triangles over x and y, z is carried along. 3: tetrahedra.
+    dim : {2, 3, 4, 5, 6}, optional
+        2: triangles over x and y, z is carried along. 3: tetrahedra. Beyond: simplices.
     id : bool, optional
         Tell each vertex's index in the input.
     attributes : str or sequence of str, optional

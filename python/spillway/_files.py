@@ -65,14 +65,16 @@ def triangulate(
 
     Parameters
     ----------
-    inputs : path, sequence of paths, or array_like of shape (n, 2) or (n, 3)
+    inputs : path, sequence of paths, or array_like of shape (n, 2) to (n, 6)
         Point files, folders (their point files), patterns (``"tiles/*.laz"``), ``"@list"`` for a
         file that lists such, ``"-"`` for standard input; or coordinates, which must not change
         meanwhile.
     output : path
         The mesh, in the format of its extension.
-    dim : {2, 3}, optional
-        2: triangles over x and y, z is carried along, also that of an array. 3: tetrahedra.
+    dim : {2, 3, 4, 5, 6}, optional
+        2: triangles over x and y, z is carried along, also that of an array. 3: tetrahedra. Beyond:
+        simplices, of an array with so many columns, of files of such, or of points with attributes
+        called x4, x5 and x6. Meshes of these are spm and npy.
     id : bool, optional
         Write each vertex's index in the input.
     attributes : str or sequence of str, optional
@@ -200,7 +202,7 @@ def convert(
         how.attributes = as_names(attributes, "attributes")
     how.force = bool(force)
     if sorted:
-        dimension = as_dimension(2 if dim is None else dim, source)
+        dimension = as_dimension(2 if dim is None else dim, source, most=3)
         put(how, "cell_points", cell_points or 0, functools.partial(_put_sorted, dimension))
     else:
         refuse(cells, cells, "without sorted=True")
@@ -319,8 +321,9 @@ def generate(
         How many.
     output : path, optional
         A point file, in the format of its extension. By default an array is made.
-    dim : {2, 3}, optional
-        2 by default. Not for ``"terrain"``, which always has z; ``"scan"`` has z with either.
+    dim : {2, 3, 4, 5, 6}, optional
+        2 by default. Not for ``"terrain"``, which always has z; ``"scan"`` has z with 2 and 3, and
+        no more; nor has ``"packing"``.
     seed : int, optional
         Another seed, other points; 1 by default.
     grid : (int, int), optional
@@ -414,7 +417,7 @@ def check(
     ----------
     mesh : path
         A file of a mesh.
-    points : path, sequence of paths, or array_like of shape (n, 2) or (n, 3), optional
+    points : path, sequence of paths, or array_like of shape (n, 2) to (n, 6), optional
         Prove, too, that the vertices are exactly the distinct ones of these points.
     any_delaunay : bool, optional
         Accept either way of splitting cocircular facets, for meshes of other programs.

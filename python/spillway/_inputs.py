@@ -43,15 +43,19 @@ def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
             raise TypeError(
                 f"{name} is of type {type(inputs).__name__}; give paths in a list, or an array"
             )
-    return as_rows(inputs, name)
+    return as_rows(inputs, name, 6)
 
 
-def as_dimension(dim: Any, inputs: list[bytes] | Floats) -> int:
+def as_dimension(dim: Any, inputs: list[bytes] | Floats, most: int = 6) -> int:
     """The dimension of a triangulation of these inputs."""
-    if not is_dimension(dim):
-        raise InvalidArgumentError(f"dim is {dim!r}; give 2 or 3")
-    if dim == 3 and not isinstance(inputs, list) and inputs.shape[1] == 2:
-        raise InvalidArgumentError("dim is 3, but inputs has 2 columns; give 3 coordinates a point")
+    if not is_dimension(dim, most):
+        raise InvalidArgumentError(f"dim is {dim!r}; give 2 {'or' if most == 3 else 'to'} {most}")
+    if not isinstance(inputs, list):
+        columns = inputs.shape[1]
+        if dim != columns and (dim, columns) != (2, 3):
+            raise InvalidArgumentError(
+                f"dim is {dim}, but inputs has {columns} columns; give {dim} coordinates a point"
+            )
     return int(dim)
 
 
@@ -91,8 +95,8 @@ def points_origin(
 ) -> _spillway.MeshOrigin:
     """A mesh that is made of points, and what these carry if they are an array."""
     check_array(inputs, options)
-    if dim == 3:
-        refuse(options, ["heights"], "with dim=3, as it chooses a height")
+    if dim > 2:
+        refuse(options, ["heights"], f"with dim={dim}, as it chooses a height")
     how = triangulate_options(options, dim)
     how.input_index = bool(id)
     return _spillway.MeshOrigin(inputs, point_options(options, dim), how, carried)

@@ -40,7 +40,7 @@ def _text(value: Any) -> str:
 
 
 def _simplices(dimension: int) -> str:
-    return "triangles" if dimension == 2 else "tetrahedra"
+    return {2: "triangles", 3: "tetrahedra"}.get(dimension, "simplices")
 
 
 def _counts(report: Any) -> str:

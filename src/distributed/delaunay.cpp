@@ -190,7 +190,7 @@ Share<D> delaunay_triangulation(std::vector<NamedPoint<D>> points, const Ranks& 
 #define SPILLWAY_INSTANTIATE(D)                                                         \
   template Share<D> delaunay_triangulation<D>(std::vector<NamedPoint<D>>, const Ranks&, \
                                               const DistributedOptions<D>&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

@@ -170,7 +170,7 @@ std::uint64_t GrowingShare<D>::bytes() const {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class GrowingShare<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

@@ -129,7 +129,7 @@ std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>> points, const
 #define SPILLWAY_INSTANTIATE(D)                                                                   \
   template std::vector<NamedPoint<D>> move_to_half(std::vector<NamedPoint<D>>, const Ranks&, int, \
                                                    const ItemLimits&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

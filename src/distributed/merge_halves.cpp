@@ -142,7 +142,7 @@ HalvesMerged merge_halves(GrowingShare<D>& share, const Group& group, int middle
 #define SPILLWAY_INSTANTIATE(D)                                                        \
   template HalvesMerged merge_halves<D>(GrowingShare<D>&, const Group&, int, unsigned, \
                                         const DistributedOptions<D>&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::distributed

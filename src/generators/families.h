@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "src/generators/generators.h"
@@ -52,6 +53,10 @@ std::unique_ptr<PointGenerator> make_terrain(const GeneratorOptions& options);
 
 /// packing.
 std::unique_ptr<PointGenerator> make_packing(const GeneratorOptions& options);
+
+/// Most families in more than three dimensions. Throws InvalidArgument for the others.
+std::unique_ptr<PointGenerator> make_higher(const GeneratorOptions& options,
+                                            std::string_view family);
 
 /// scan.
 std::unique_ptr<PointGenerator> make_scan(const GeneratorOptions& options);

@@ -35,9 +35,12 @@ bool always_has_heights(Family family) {
 }
 
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options) {
-  if (options.dimension != 2 && options.dimension != 3) {
+  if (!is_dimension(options.dimension)) {
     throw InvalidArgument(
-        fmt::format("cannot generate points of dimension {}; choose 2 or 3", options.dimension));
+        fmt::format("cannot generate points of dimension {}; choose 2 to 6", options.dimension));
+  }
+  if (options.dimension > 3) {
+    return make_higher(options, kNames[static_cast<std::size_t>(options.family)]);
   }
   if (options.family == Family::kTerrain) return make_terrain(options);
   if (options.family == Family::kPacking) return make_packing(options);
@@ -57,7 +60,8 @@ std::vector<Point<D>> generated_points(const GeneratorOptions& options) {
   while (const std::size_t n = generator->next(block)) {
     for (std::size_t i = 0; i < n; ++i) {
       Point<D> p;
-      std::copy_n(block[i].begin(), D, p.begin());
+      std::copy_n(block[i].begin(), std::min(D, 3), p.begin());
+      if constexpr (D > 3) std::copy_n(&generator->further()[i * (D - 3)], D - 3, p.begin() + 3);
       all.push_back(p);
     }
   }
@@ -66,7 +70,7 @@ std::vector<Point<D>> generated_points(const GeneratorOptions& options) {
 
 #define SPILLWAY_INSTANTIATE(D) \
   template std::vector<Point<D>> generated_points<D>(const GeneratorOptions&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::generators

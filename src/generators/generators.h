@@ -48,7 +48,7 @@ bool always_has_heights(Family family);
 struct GeneratorOptions {
   Family family = Family::kUniform;
   std::uint64_t count = 0;
-  int dimension = 2;  ///< 2: z is 0, but for families that always have heights
+  int dimension = 2;  ///< 2 to 6; 2: z is 0, but for families that always have heights
   std::uint64_t seed = 1;
 };
 
@@ -61,14 +61,18 @@ class PointGenerator {
   /// end.
   virtual std::size_t next(std::span<Point<3>> points) = 0;
 
+  /// Of the points that next() has made last, the coordinates beyond z: dimension - 3 numbers each.
+  [[nodiscard]] virtual std::span<const double> further() const { return {}; }
+
   /// The lattice of families that consist of integers (lattice, duplicates, collinear, coplanar:
   /// the unit one; terrain: centimetres at UTM offsets; scan: tenths of millimetres), nullptr for
-  /// the others. Points of such families come as integers.
+  /// the others. Points of such families come as integers. In more than three dimensions nullptr:
+  /// the same families consist of integers, too.
   [[nodiscard]] virtual const IntegerLattice* lattice() const { return nullptr; }
 };
 
-/// The stream of those points. Throws InvalidArgument for a dimension other than 2 and 3, and Failure
-/// for a terrain so large that its centimetres would leave the 32-bit integers of LAS.
+/// The stream of those points. Throws InvalidArgument for a dimension that the family does not have,
+/// and Failure for a terrain so large that its centimetres would leave the 32-bit integers of LAS.
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options);
 
 /// All points at once, for tests and benchmarks, generated with dimension D whatever the options

@@ -8,15 +8,18 @@
 
 /// Call a macro with each dimension: a source file ends with its instantiations.
 #define SPILLWAY_FOR_EACH_DIMENSION(INSTANTIATE) \
-  SPILLWAY_FOR_EACH_STREAMED_DIMENSION(INSTANTIATE) SPILLWAY_FOR_EACH_HIGHER_DIMENSION(INSTANTIATE)
+  SPILLWAY_FOR_EACH_CUT_DIMENSION(INSTANTIATE) SPILLWAY_FOR_EACH_HIGHER_DIMENSION(INSTANTIATE)
 
-/// Those of points in streams, which have x, y and z.
-#define SPILLWAY_FOR_EACH_STREAMED_DIMENSION(INSTANTIATE) INSTANTIATE(2) INSTANTIATE(3)
+/// Those of the axes along which streams are cut into tiles: x, y and maybe z.
+#define SPILLWAY_FOR_EACH_CUT_DIMENSION(INSTANTIATE) INSTANTIATE(2) INSTANTIATE(3)
 
-/// Those that share one kernel, and are triangulated in memory.
+/// Those that share one kernel.
 #define SPILLWAY_FOR_EACH_HIGHER_DIMENSION(INSTANTIATE) INSTANTIATE(4) INSTANTIATE(5) INSTANTIATE(6)
 
 namespace spillway::geometry {
+
+/// Whether templates are compiled for it.
+constexpr bool is_dimension(int dimension) { return dimension >= 2 && dimension <= 6; }
 
 #define SPILLWAY_CASE(D) \
   case D:                \
@@ -30,10 +33,10 @@ decltype(auto) with_dimension(int dimension, F&& f) {
   __builtin_unreachable();
 }
 
-/// The same of a stream's dimension.
+/// The same of the number of axes along which tiles are cut.
 template <typename F>
-decltype(auto) with_streamed_dimension(int dimension, F&& f) {
-  switch (dimension) { SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_CASE) }
+decltype(auto) with_cut_dimension(int dimension, F&& f) {
+  switch (dimension) { SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_CASE) }
   __builtin_unreachable();
 }
 

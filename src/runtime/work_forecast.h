@@ -20,11 +20,13 @@ struct WorkForecast {
   double bytes = 0;     ///< that it took
   double exponent = 2;  ///< of the bytes, as a power of the points
 
-  /// By two samples, where a simplex takes so many bytes.
-  static WorkForecast of(const SampleSize& smaller, const SampleSize& larger,
+  /// By two samples in so many dimensions, where a simplex takes so many bytes.
+  static WorkForecast of(const SampleSize& smaller, const SampleSize& larger, int dimension,
                          double simplex_bytes) {
-    // There are at most as many simplices as pairs of points, so the exponent is 2 at most. In a
-    // small sample relatively many of them are on the hull, and it seems less than it is.
+    // There are at most about as many simplices as this power of the points (McMullen's upper bound
+    // theorem). In a small sample relatively many of them are on the hull, and it seems less than it
+    // is.
+    const double most = (dimension + 1) / 2;  // NOLINT(bugprone-integer-division): rounded down
     constexpr double kHull = 0.1;
     WorkForecast forecast{.points = static_cast<double>(larger.points),
                           .bytes = static_cast<double>(larger.simplices) * simplex_bytes};
@@ -34,7 +36,7 @@ struct WorkForecast {
       };
       forecast.exponent = std::clamp(
           ratio(larger.simplices, smaller.simplices) / ratio(larger.points, smaller.points) + kHull,
-          1.0, 2.0);
+          1.0, most);
     }
     return forecast;
   }

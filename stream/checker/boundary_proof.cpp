@@ -146,7 +146,7 @@ void prove_boundary(const MeshView<D>& mesh, const std::vector<BoundaryFacet<D>>
 #define SPILLWAY_INSTANTIATE(D)                                                             \
   template void prove_boundary<D>(const MeshView<D>&, const std::vector<BoundaryFacet<D>>&, \
                                   Faults&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -13,18 +13,11 @@ namespace spillway::checker {
 namespace {
 
 void require_dimension(int dimension) {
-  if (dimension != 2 && dimension != 3) {
+  if (!is_dimension(dimension)) {
     throw Failure(
-        fmt::format("a mesh of dimension {} cannot be checked: only 2 and 3 can", dimension),
+        fmt::format("a mesh of dimension {} cannot be checked: only 2 to 6 can", dimension),
         ErrorCode::kInvalidArgument);
   }
-}
-
-template <int D>
-Point<D> output_point(const Point<3>& p) {
-  Point<D> result;
-  std::copy_n(p.begin(), D, result.begin());
-  return result;
 }
 
 template <int D>
@@ -39,7 +32,7 @@ std::uint64_t hash_of(const Mesh& mesh) {
                                   Words<D>::kSimplex, s / (D + 1), vertex, mesh.vertices.size()),
                       ErrorCode::kBadInput, {.place = at_record(s / (D + 1))});
       }
-      simplex[i] = output_point<D>(mesh.vertices[vertex]);
+      simplex[i] = mesh.vertex<D>(vertex);
     }
     hash.add(simplex);
   }
@@ -49,7 +42,7 @@ std::uint64_t hash_of(const Mesh& mesh) {
 CheckReport read_stream(MeshStreamReader& reader, const CheckerOptions& options, StreamTask task) {
   require_dimension(reader.header().dimension);
   CheckReport report;
-  with_streamed_dimension(reader.header().dimension,
+  with_dimension(reader.header().dimension,
                           [&](auto d) { prove_stream<d>(reader, options, task, report); });
   return report;
 }
@@ -61,7 +54,7 @@ CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options) {
   CheckReport report;
   report.vertices = mesh.vertices.size();
   report.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  with_streamed_dimension(mesh.header.dimension,
+  with_dimension(mesh.header.dimension,
                           [&](auto d) { prove_mesh<d>(mesh, options, report); });
   return report;
 }
@@ -76,7 +69,7 @@ CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& op
 
 std::uint64_t canonical_hash(const Mesh& mesh) {
   require_dimension(mesh.header.dimension);
-  return with_streamed_dimension(mesh.header.dimension, [&](auto d) { return hash_of<d>(mesh); });
+  return with_dimension(mesh.header.dimension, [&](auto d) { return hash_of<d>(mesh); });
 }
 
 }  // namespace spillway::checker

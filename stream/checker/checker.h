@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "formats/meshes/common/mesh.h"
 #include "formats/meshes/common/mesh_stream.h"
@@ -23,8 +24,9 @@ struct CheckerOptions : CheckOptions {
   unsigned threads = 1;  ///< 0: as many as the machine has
   /// If set, is told now and then how many simplices are done, and the reader's fraction_read().
   std::function<void(std::uint64_t simplices, std::optional<double> fraction)> progress{};
-  /// If set, is given the output coordinates of all vertices, in the stream's order.
-  std::function<void(const WorldPoint& vertex)> vertex{};
+  /// If set, is given the output coordinates of all vertices, in the stream's order: x, y and z, and
+  /// a record with those beyond.
+  std::function<void(const WorldPoint& vertex, std::span<const std::byte> further)> vertex{};
 };
 
 /// Proves or refutes: every vertex number valid and every vertex used, no simplex twice, every
@@ -32,7 +34,7 @@ struct CheckerOptions : CheckOptions {
 /// boundary one convex surface traversed once, every inner facet locally Delaunay by exact
 /// predicates. Together these make the mesh the Delaunay triangulation of its vertices (Delaunay's
 /// lemma: locally Delaunay everywhere implies globally); docs/algorithm-checker.md has the
-/// argument. Throws Failure if the mesh's dimension is neither 2 nor 3.
+/// argument. Throws Failure if the mesh's dimension is none of 2 to 6.
 CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options);
 
 /// The same proof for a mesh that flows, in memory that is proportional to its open border (the

@@ -10,26 +10,18 @@
 #include <utility>
 
 #include "src/geometry/point.h"
+#include "src/geometry/simplex_name.h"
 #include "stream/checker/checker.h"
 
 namespace spillway::checker {
 
 /// The words for a simplex and its facets.
 template <int D>
-struct Words;
-template <>
-struct Words<2> {
-  static constexpr const char* kSimplex = "triangle";
-  static constexpr const char* kSimplices = "triangles";
-  static constexpr const char* kFacet = "edge";
-  static constexpr const char* kRidge = "vertex";
-};
-template <>
-struct Words<3> {
-  static constexpr const char* kSimplex = "tetrahedron";
-  static constexpr const char* kSimplices = "tetrahedra";
-  static constexpr const char* kFacet = "facet";
-  static constexpr const char* kRidge = "edge";
+struct Words {
+  static constexpr const char* kSimplex = simplex_of(D);
+  static constexpr const char* kSimplices = simplices_of(D);
+  static constexpr const char* kFacet = D == 2 ? "edge" : "facet";
+  static constexpr const char* kRidge = D == 2 ? "vertex" : D == 3 ? "edge" : "ridge";
 };
 
 /// A vertex as faults name it: its number and its output coordinates.

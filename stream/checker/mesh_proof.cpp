@@ -11,9 +11,7 @@ namespace spillway::checker {
 
 template <int D>
 NamedVertex<D> MeshView<D>::named(std::uint64_t vertex) const {
-  NamedVertex<D> result{numbers_ == nullptr ? vertex : numbers_->vertices[vertex], {}};
-  std::copy_n(mesh_.vertices[vertex].begin(), D, result.point.begin());
-  return result;
+  return {numbers_ == nullptr ? vertex : numbers_->vertices[vertex], mesh_.vertex<D>(vertex)};
 }
 
 template <int D>
@@ -82,8 +80,8 @@ class MeshProof {
       }
     }
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-      for (int k = 0; k < D; ++k) {
-        if (!std::isfinite(mesh_.vertices[v][k])) {
+      for (const double coordinate : mesh_.vertex<D>(v)) {
+        if (!std::isfinite(coordinate)) {
           faults_.add("{} has a coordinate that is not finite", view_.vertex_text(v));
         }
       }
@@ -94,8 +92,9 @@ class MeshProof {
   // The integers of the lattice where there is one with equal scales, else the coordinates as they
   // are.
   void set_coordinates() {
-    const std::optional<IntegerLattice>& lattice =
+    std::optional<IntegerLattice> lattice =
         mesh_.header.lattice ? mesh_.header.lattice : options_.input_lattice;
+    if (D > kOwnAxes) lattice.reset();  // coordinates beyond z are on none
     std::vector<Point<D>>& points = view_.points();
     const std::uint64_t before = faults_.count();
     if (lattice) {
@@ -117,9 +116,7 @@ class MeshProof {
       }
     }
     if (report_.on_lattice) return;
-    for (std::size_t v = 0; v < points.size(); ++v) {
-      std::copy_n(mesh_.vertices[v].begin(), D, points[v].begin());
-    }
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = mesh_.vertex<D>(v);
   }
 
   // Every vertex used, no two of them equal.
@@ -270,7 +267,7 @@ void prove_mesh(const Mesh& mesh, const CheckerOptions& options, CheckReport& re
   template ApexSide apex_side<D>(const std::array<Point<D>, D + 1>&, const Point<D>&, \
                                  const CheckerOptions&);                              \
   template void prove_mesh<D>(const Mesh&, const CheckerOptions&, CheckReport&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -61,7 +61,7 @@ void NeededVertices<D>::finalize(std::uint32_t slot) {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class NeededVertices<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

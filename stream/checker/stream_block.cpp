@@ -119,7 +119,7 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class StreamBlock<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

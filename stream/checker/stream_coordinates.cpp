@@ -6,12 +6,23 @@
 #include "src/geometry/dimensions.h"
 
 namespace spillway::checker {
+namespace {
+
+/// With coordinates beyond z, which are on no lattice, none are.
+template <int D>
+std::optional<IntegerLattice> lattice_of(const MeshStreamHeader& header,
+                                         const std::optional<IntegerLattice>& input_lattice) {
+  if (D > kOwnAxes) return std::nullopt;
+  return header.lattice ? header.lattice : input_lattice;
+}
+
+}  // namespace
 
 template <int D>
 StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
                                         const std::optional<IntegerLattice>& input_lattice)
-    : lattice_(header.lattice ? header.lattice : input_lattice),
-      blocks_hold_integers_(header.lattice.has_value()),
+    : lattice_(lattice_of<D>(header, input_lattice)),
+      blocks_hold_integers_(lattice_ && header.lattice),
       on_lattice_(lattice_ && lattice_->isotropic(D)) {}
 
 template <int D>
@@ -26,9 +37,7 @@ int StreamCoordinates<D>::axis_off_lattice(const LatticePoint& in_block) const {
 }
 
 template <int D>
-Point<D> StreamCoordinates<D>::for_predicates(const LatticePoint& in_block) const {
-  Point<D> point;
-  std::copy_n(in_block.begin(), D, point.begin());
+Point<D> StreamCoordinates<D>::for_predicates(Point<D> point) const {
   if (blocks_hold_integers_ == on_lattice_) return point;
   for (int k = 0; k < D; ++k) {
     if (blocks_hold_integers_) {
@@ -50,7 +59,7 @@ Point<D> StreamCoordinates<D>::to_output(const Point<D>& point) const {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class StreamCoordinates<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

@@ -27,8 +27,9 @@ class StreamCoordinates {
   /// The first axis in which a vertex as it stands in a block is off the lattice, or -1.
   [[nodiscard]] int axis_off_lattice(const LatticePoint& in_block) const;
 
-  /// What predicates run on, of a vertex as it stands in a block; rounded if it is off the lattice.
-  [[nodiscard]] Point<D> for_predicates(const LatticePoint& in_block) const;
+  /// What predicates run on, of all coordinates of a vertex as they stand in a block; rounded if it
+  /// is off the lattice.
+  [[nodiscard]] Point<D> for_predicates(Point<D> in_block) const;
 
   /// Output coordinates of what for_predicates() gave.
   [[nodiscard]] Point<D> to_output(const Point<D>& point) const;

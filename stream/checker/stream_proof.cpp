@@ -109,11 +109,14 @@ class StreamProof {
     simplices_entered_ += block.simplices();
     block.points.clear();
     for (const LatticePoint& vertex : mesh.vertices) {
-      const Point<D> point = coordinates_.for_predicates(vertex);
+      const Point<D> point =
+          coordinates_.for_predicates(mesh.vertex<D>(block.points.size()));
       const int axis = coordinates_.axis_off_lattice(vertex);
       if (axis >= 0) report_off_lattice(block.first_vertex + block.points.size(), vertex, axis);
       block.points.push_back(point);
-      if (options_.vertex) options_.vertex(coordinates_.block_to_output(vertex));
+      if (options_.vertex) {
+        options_.vertex(coordinates_.block_to_output(vertex), std::as_bytes(further_part<D>(point)));
+      }
     }
     vertices_.enter(mesh, block.points, block.slots);
   }
@@ -123,7 +126,8 @@ class StreamProof {
     ++report_.off_lattice;
     const IntegerLattice& lattice = *coordinates_.lattice();
     NamedVertex<D> named{number, {}};
-    std::copy_n(coordinates_.block_to_output(vertex).begin(), D, named.point.begin());
+    std::copy_n(coordinates_.block_to_output(vertex).begin(), std::min(D, kOwnAxes),
+                named.point.begin());
     faults_.add("{} is off the lattice: its {} is no integer * {} + {}", vertex_text<D>(named),
                 "xyz"[axis], lattice.scale[axis], lattice.offset[axis]);
   }
@@ -253,6 +257,7 @@ class StreamProof {
     });
     Mesh mesh;
     mesh.header.dimension = D;
+    mesh.header.attributes = further_coordinates(D);
     MeshNumbers numbers;
     std::vector<Point<D>> points;
     std::unordered_map<std::uint32_t, std::uint64_t> number_of_slot;
@@ -262,8 +267,8 @@ class StreamProof {
         const NamedVertex<D> vertex = named(vertices_[slot]);
         numbers.vertices.push_back(vertex.number);
         points.push_back(vertices_[slot].point);
-        mesh.vertices.emplace_back();
-        std::copy(vertex.point.begin(), vertex.point.end(), mesh.vertices.back().begin());
+        mesh.vertices.emplace_back(own_coordinates<D>(vertex.point));
+        append_further_coordinates<D>(vertex.point, mesh.attributes);
       }
       return it->second;
     };
@@ -332,7 +337,7 @@ void prove_stream(MeshStreamReader& reader, const CheckerOptions& options, Strea
 
 #define SPILLWAY_INSTANTIATE(D) \
   template void prove_stream<D>(MeshStreamReader&, const CheckerOptions&, StreamTask, CheckReport&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::checker

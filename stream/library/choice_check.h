@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "src/error.h"
+#include "src/geometry/simplex_name.h"
 
 namespace spillway::stream {
 
@@ -13,6 +14,14 @@ void check_choice(Choice value, Choice last, const char* what) {
   const int number = static_cast<int>(value);
   if (number >= 0 && number <= static_cast<int>(last)) return;
   throw InvalidArgument(fmt::format("there is no {} of number {}", what, number));
+}
+
+/// Throws Failure (kInvalidArgument) for simplices of more than three dimensions, of which what comes
+/// of a mesh is not made: "a picture shows", "a product is made of".
+inline void refuse_higher_dimensions(int dimension, const char* what) {
+  if (dimension <= 3) return;
+  throw InvalidArgument(fmt::format("{} triangles and tetrahedra, and the mesh is of {}", what,
+                                    simplices_text(dimension)));
 }
 
 }  // namespace spillway::stream

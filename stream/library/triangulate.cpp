@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
 #include "stream/library/choice_check.h"
@@ -21,8 +22,11 @@ namespace spillway::stream {
 namespace {
 
 void check(const TriangulateOptions& options) {
-  if (options.dimension != 2 && options.dimension != 3) {
-    throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
+  if (!is_dimension(options.dimension)) {
+    throw InvalidArgument(fmt::format("there are 2 to 6 dimensions, not {}", options.dimension));
+  }
+  if (options.dimension > 3 && options.kernel == Kernel::kCgal) {
+    throw InvalidArgument("CGAL's kernel triangulates in 2 and 3 dimensions: choose Spillway's own");
   }
   check_choice(options.heights, Heights::kMean, "choice of heights");
   check_choice(options.division, Division::kConstantAxis, "division");
@@ -40,8 +44,10 @@ void check(const TriangulateOptions& options) {
 
 void check(const RunPoints& points, int dimension) {
   if (points.dimension != 0 && points.dimension != dimension) {
-    throw InvalidArgument(fmt::format("the files were opened for {} dimensions, not for {}",
-                                      points.dimension, dimension));
+    throw InvalidArgument(fmt::format(
+        "{} {} dimensions, not {}",
+        points.files != nullptr ? "the files were opened for" : "the points have",
+        points.dimension, dimension));
   }
   const std::optional<IntegerLattice>& lattice = points.stream->lattice();
   if (points.files != nullptr && lattice && !lattice->isotropic(dimension)) {
@@ -49,8 +55,13 @@ void check(const RunPoints& points, int dimension) {
         "the files were not opened to be triangulated: open them for {} dimensions", dimension));
   }
   // Files without z are told of when they are opened.
-  if (points.dimension == 0 && dimension == 3 && !points.has_heights) {
+  if (points.dimension == 0 && dimension >= 3 && !points.has_heights) {
     throw Failure("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
+  }
+  if (!has_further_coordinates(points.attributes, dimension)) {
+    throw InvalidArgument(
+        fmt::format("the points have x, y and z, but are to be triangulated in {} dimensions",
+                    dimension));
   }
 }
 
@@ -67,7 +78,7 @@ Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
   static_cast<RunStatistics&>(report) =
-      with_streamed_dimension(run.engine.asked.dimension,
+      with_dimension(run.engine.asked.dimension,
                               [&](auto d) { return triangulate_stream<d>(points, blocks, setup); });
   if (report.threads < run.engine.threads && run.context.options().detail) {
     run.context.options().detail(

@@ -165,7 +165,7 @@ void Sequencer<D>::state(State& state) {
   template void Sequencer<D>::state(StateReader&); \
   template void Sequencer<D>::state(StateWriter&); \
   template class Sequencer<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

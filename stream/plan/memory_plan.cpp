@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -47,6 +48,23 @@ constexpr Costs kSpace{.leaf_bytes = 800,
                        .leaves_share = 0.45,
                        .least_limit = 96 * kMiB};
 
+/// With four dimensions and more a point has 32, 190 or 1,300 simplices, and a border is a large
+/// part of a tile: few large leaves.
+constexpr Costs higher(std::size_t leaf_bytes, std::size_t tile_bytes, std::uint64_t least_limit) {
+  return {.leaf_bytes = leaf_bytes,
+          .tile_bytes = tile_bytes,
+          .good_tile = std::numeric_limits<std::size_t>::max(),
+          .good_leaf = 262'144,
+          .small_leaf = 65'536,
+          .enough_leaves = 2,
+          .buffer_share = 0.2,
+          .leaf_share = 0.25,
+          .leaves_share = 0.5,
+          .least_limit = least_limit};
+}
+constexpr std::array kHigher = {higher(5'000, 1'500, 128 * kMiB), higher(36'000, 8'000, 256 * kMiB),
+                                higher(300'000, 60'000, 512 * kMiB)};
+
 /// What is not shared out: gaps between what is in use, tables, and code that is loaded when it is
 /// first run. More where points are read and tiles are triangulated at the same time.
 constexpr std::uint64_t kReserve = 4 * kMiB;
@@ -77,7 +95,19 @@ constexpr std::size_t kLeastEarlyBatches = 2;
 constexpr std::size_t kEnoughBatches = 6;  // for few threads
 constexpr std::size_t kBatchesOfThread = 2;
 
-const Costs& costs_of(int dimension) { return dimension == 2 ? kPlane : kSpace; }
+const Costs& costs_of(int dimension) {
+  if (dimension > 3) return kHigher[static_cast<std::size_t>(dimension - 4)];
+  return dimension == 2 ? kPlane : kSpace;
+}
+
+const char* dimensions_text(int dimension) {
+  constexpr std::array kTexts = {"",
+                                 " in three dimensions",
+                                 " in four dimensions",
+                                 " in five dimensions",
+                                 " in six dimensions"};
+  return kTexts[static_cast<std::size_t>(dimension - 2)];
+}
 
 std::size_t share(std::uint64_t limit, double part, std::size_t bytes_each) {
   return static_cast<std::size_t>(static_cast<double>(limit) * part) / bytes_each;
@@ -94,7 +124,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
     const auto least = static_cast<std::uint64_t>(
         std::ceil(static_cast<double>(costs.least_limit / kMiB) * parts));
     throw TooSmallLimit(fmt::format("the memory limit is too small: {} MiB are the least{}", least,
-                                    dimension == 3 ? " in three dimensions" : ""),
+                                    dimensions_text(dimension)),
                         {.enough = least * kMiB, .remedy = Remedy::kMemory});
   }
   MemoryPlan plan;

@@ -7,15 +7,14 @@
 #include "src/delaunay/base_case/affine_basis.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
+#include "src/geometry/simplex_name.h"
 
 namespace spillway::stream {
 namespace {
 
-template <int D>
-Point<D> first_coordinates(const LatticePoint& point) {
-  Point<D> first;
-  std::copy_n(point.begin(), D, first.begin());
-  return first;
+const char* space_name(std::size_t independent) {
+  if (independent == 2) return "on one line";
+  return independent == 3 ? "in one plane" : "in one space of fewer dimensions";
 }
 
 }  // namespace
@@ -23,15 +22,15 @@ Point<D> first_coordinates(const LatticePoint& point) {
 /// Points are compared with what is known when the block comes; what another thread finds meanwhile
 /// is a part of what all points span all the same.
 template <int D>
-void PointSpan<D>::add(std::span<const LatticePoint> points) {
+void PointSpan<D>::add(const PointsView& points) {
   if (full_) return;
   Facts seen;
   {
     const std::lock_guard lock(mutex_);
     seen = facts_;
   }
-  for (const LatticePoint& point : points) {
-    const Point<D> p = first_coordinates<D>(point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point<D> p = points.coordinates<D>(i);
     if (std::ranges::find(seen.points, p) != seen.points.end()) continue;
     if (is_independent<D>(seen.points, p)) {
       seen.points.push_back(p);
@@ -63,7 +62,7 @@ void PointSpan<D>::add(const Facts& other) {
 template <int D>
 void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points) {
   if (span.full()) return;
-  const char* const simplex = D == 2 ? "triangle" : "tetrahedron";
+  const char* const simplex = simplex_of(D);
   const std::size_t independent = span.facts().points.size();
   if (!span.facts().others) {
     throw Failure(fmt::format("the input has only {} distinct point{}: a {} needs {}", independent,
@@ -71,15 +70,15 @@ void refuse_flat_points(const PointSpan<D>& span, std::uint64_t points) {
                   ErrorCode::kDegenerateInput);
   }
   throw Failure(fmt::format("all {} points lie {}: there is no {} to make", points,
-                            independent == 2 ? "on one line" : "in one plane", simplex),
+                            space_name(independent), simplex),
                 ErrorCode::kDegenerateInput,
-                {.remedy = independent == 3 ? Remedy::kPlane : Remedy::kNone});
+                {.remedy = D == 3 && independent == 3 ? Remedy::kPlane : Remedy::kNone});
 }
 
 #define SPILLWAY_INSTANTIATE(D) \
   template class PointSpan<D>;  \
   template void refuse_flat_points<D>(const PointSpan<D>&, std::uint64_t);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -3,11 +3,10 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
-#include <span>
 #include <vector>
 
-#include "src/geometry/framed_point.h"
 #include "src/geometry/point.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::stream {
 
@@ -17,7 +16,7 @@ template <int D>
 class PointSpan {
  public:
   /// By any number of threads at a time.
-  void add(std::span<const LatticePoint> points);
+  void add(const PointsView& points);
 
   /// Whether they span D dimensions.
   [[nodiscard]] bool full() const { return full_; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/framed_point.h"
 
@@ -24,6 +25,12 @@ struct PointsView {
   /// Bytes of a point's record; 0 if there are none.
   [[nodiscard]] std::size_t record_size() const {
     return attributes.empty() ? 0 : attributes.size() / points.size();
+  }
+  /// All coordinates of a point.
+  template <int D>
+  [[nodiscard]] Point<D> coordinates(std::size_t i) const {
+    const std::byte* const record = D > kOwnAxes ? &attributes[i * record_size()] : nullptr;
+    return coordinates_of<D>(points[i], record);
   }
   [[nodiscard]] PointsView subview(std::size_t begin, std::size_t count) const {
     const std::size_t record = record_size();

@@ -1,24 +1,33 @@
 #pragma once
 
+#include <algorithm>
 #include <mutex>
 
-#include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice_check.h"
+#include "stream/points/points_view.h"
 
 namespace spillway::stream {
 
-/// The box around points in x and y, as many threads see them.
+/// The box around points along the first D axes, as many threads see them.
+template <int D>
 class SeenExtent {
  public:
-  void add(const PointBlock& points) {
-    const Box<2> box = plane_of(box_around(points.points));
+  void add(const PointsView& points) {
+    Box<D> box;
+    if constexpr (D > kOwnAxes) {
+      for (std::size_t i = 0; i < points.size(); ++i) box.expand(points.coordinates<D>(i));
+    } else {
+      const Box<3> all = box_around(points.points);
+      std::copy_n(all.lo.begin(), D, box.lo.begin());
+      std::copy_n(all.hi.begin(), D, box.hi.begin());
+    }
     const std::lock_guard lock(mutex_);
     box_.expand(box);
   }
 
   /// When all have been seen.
-  [[nodiscard]] const Box<2>& box() const { return box_; }
+  [[nodiscard]] const Box<D>& box() const { return box_; }
 
   template <typename State>
   void state(State& state) {
@@ -27,7 +36,7 @@ class SeenExtent {
 
  private:
   std::mutex mutex_;  ///< guards the next one
-  Box<2> box_;
+  Box<D> box_;
 };
 
 }  // namespace spillway::stream

@@ -71,7 +71,7 @@ class RankExecutor final : public Executor {
 
   RankMesh triangulate(Run& run, stream::JoinedInputs& source, BlockSink& blocks,
                        RankCheckpoints* checkpoints) const {
-    return with_streamed_dimension(run.engine.asked.dimension, [&](auto d) {
+    return with_dimension(run.engine.asked.dimension, [&](auto d) {
       return triangulate_over_ranks<d>(source, blocks, run.setup(), ranks_, checkpoints);
     });
   }

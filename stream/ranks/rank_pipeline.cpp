@@ -148,7 +148,7 @@ class RankRun final : public RunPhases<D> {
     // How much of the reading it is that comes before the exchange is not known.
     pieces_.emplace(source_, ranks_, setup().scratch, engine().times(),
                     [&] { setup().progress.tell(source_.points_read(), std::nullopt); });
-    auto [division, sample] = divide_among_ranks<D>(*pieces_, ranks_);
+    auto [division, sample] = divide_among_ranks<cut_axes(D)>(*pieces_, ranks_);
     division_ = std::move(division);
     const auto cell = division_.cell_of(ranks_.rank());
     if (cell && source_.extent()) {
@@ -386,7 +386,7 @@ class RankRun final : public RunPhases<D> {
   const Ranks& ranks_;
   RankCheckpoints* const checkpoints_;     ///< or null
   std::unique_ptr<StateReader> restored_;  ///< until all of it is read
-  RankDivision division_{CutTree(D), {}};
+  RankDivision division_{CutTree(cut_axes(D)), {}};
   ExchangeRound most_;
   std::optional<PieceTable> pieces_;  ///< these two while points are read
   std::optional<PointExchange> exchange_;
@@ -408,7 +408,7 @@ RankMesh triangulate_over_ranks(JoinedInputs& source, BlockSink& blocks, const R
 #define SPILLWAY_INSTANTIATE(D)                                                           \
   template RankMesh triangulate_over_ranks<D>(JoinedInputs&, BlockSink&, const RunSetup&, \
                                               const Ranks&, RankCheckpoints*);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 std::unique_ptr<JoinedInputs> open_shared_source(FileSystem& files, std::vector<std::string> paths,

@@ -76,7 +76,7 @@ std::uint32_t RankTree<D>::add_node(const TileNode<D>& tiles, const Shape& shape
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class RankTree<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

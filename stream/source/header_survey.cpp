@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/inputs/open_points.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "stream/source/changed_input.h"
 #include "stream/source/source_crs.h"
@@ -16,21 +17,35 @@
 namespace spillway::stream {
 namespace {
 
+/// "; they have intensity, classification", or nothing.
+std::string names_of(const AttributeLayout& attributes) {
+  std::string names;
+  for (const AttributeField& field : attributes.fields()) {
+    names += (names.empty() ? "; they have " : ", ") + field.attribute.name;
+  }
+  return names;
+}
+
 /// Throws Failure unless the points have what the dimension and the filter need.
 void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOptions& options) {
   const PointHeader& header = input.header;
-  if (options.dimension == 3 && !input.has_heights()) {
+  if (options.dimension >= 3 && !input.has_heights()) {
     throw Failure(header.name + ": the points have no z", ErrorCode::kDegenerateInput,
                   {.file = header.name, .remedy = Remedy::kPlane});
   }
+  for (int axis = kOwnAxes; axis < options.dimension; ++axis) {
+    if (find_coordinate(header.attributes, axis) != nullptr) continue;
+    throw Failure(
+        fmt::format("{}: the points have no coordinate {} of {} dimensions: no attribute called "
+                    "{} (of arrays without names: {}){}",
+                    header.name, axis + 1, options.dimension, coordinate_name(axis),
+                    column_name(axis), names_of(header.attributes)),
+        ErrorCode::kBadInput, {.file = header.name});
+  }
   for (const std::string& name : options.filter.attributes()) {
     if (header.attributes.find(name) != nullptr) continue;
-    std::string others;
-    for (const AttributeField& field : header.attributes.fields()) {
-      others += (others.empty() ? "; they have " : ", ") + field.attribute.name;
-    }
     throw Failure(fmt::format("{}: the points have no {}, which a filter looks at{}", header.name,
-                              name, others),
+                              name, names_of(header.attributes)),
                   ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kFilters});
   }
 }

@@ -1,8 +1,12 @@
 #include "stream/source/joined_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "formats/points/attributes/further_coordinates.h"
+#include "src/error.h"
 #include "stream/source/ordered_blocks.h"
 
 namespace spillway::stream {
@@ -209,8 +213,9 @@ void JoinedInputs::carry(const AttributeChoice& choice) {
   AttributeChoice read = choice;
   const std::vector<std::string> filtered = options_.filter.attributes();
   read.names.insert(read.names.end(), filtered.begin(), filtered.end());
-  attributes_ = chosen(facts_.attributes(), choice);
-  read_attributes_ = chosen(facts_.attributes(), read);
+  const AttributeLayout all = facts_.attributes();
+  attributes_ = with_further_coordinates(all, choice, options_.dimension);
+  read_attributes_ = with_further_coordinates(all, read, options_.dimension);
   without_filtered_ = RecordSelection(read_attributes_, attributes_);
   pieces_.carry(read_attributes_);
   if (thinning_) thinning_->carry(attributes_);
@@ -252,6 +257,7 @@ void JoinedInputs::decode_input(SourcePiece& piece, PointBlock& block) {
   if (block.attributes.empty()) {
     block.attributes.resize(block.size() * read_attributes_.record_size());
   }
+  check_further_coordinates(piece, block);
   coordinates_.bring(piece.input, read_attributes_, block);
   PointCounts counts;
   counts.invalid = block.invalid;
@@ -276,6 +282,29 @@ void JoinedInputs::decode_input(SourcePiece& piece, PointBlock& block) {
     } else {
       untold_.push_back(std::move(notice));
     }
+  }
+}
+
+/// Those in x, y and z the reader has checked.
+void JoinedInputs::check_further_coordinates(const SourcePiece& piece, PointBlock& block) const {
+  if (further_axes(options_.dimension) == 0) return;
+  const PointHeader& header = facts_.inputs[piece.input].header;
+  const CoordinateCheck check(header.attributes, options_.dimension);
+  const std::size_t record_size = read_attributes_.record_size();
+  const auto record = [&](std::size_t i) { return &block.attributes[i * record_size]; };
+  if (options_.reader.skip_invalid) {
+    const std::size_t before = block.size();
+    block.keep([&](std::size_t i) { return check.bad_axis(record(i)) == 0; });
+    block.invalid += before - block.size();
+    return;
+  }
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const int axis = check.bad_axis(record(i));
+    if (axis == 0) continue;
+    throw BadInput(header.name,
+                   fmt::format("point {} has {}; correct or remove the point", block.index[i],
+                               check.text(axis, record(i))),
+                   at_record(block.index[i]));
   }
 }
 

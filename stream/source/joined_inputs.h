@@ -161,6 +161,7 @@ class JoinedInputs : public PointStream {
 
   [[nodiscard]] std::optional<Box<3>> find_world_extent() const;
   void decode_input(SourcePiece& piece, PointBlock& block);
+  void check_further_coordinates(const SourcePiece& piece, PointBlock& block) const;
   void thin_inputs();
 
   JoinedInputsOptions options_;

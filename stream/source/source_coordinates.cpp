@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/point_formats.h"
 #include "src/geometry/lattice_check.h"
 
@@ -36,7 +37,8 @@ SourceCoordinates::SourceCoordinates(const SourceFacts& facts, int dimension,
                                      const std::function<void(std::string_view)>& detail)
     : facts_(facts),
       is_triangulated_(dimension > 0),
-      dimension_(dimension > 0 ? dimension : 2),
+      is_on_lattice_(dimension <= kOwnAxes),
+      dimension_(dimension > 0 ? std::min(dimension, kOwnAxes) : 2),
       filter_(filter),
       inputs_(facts.inputs.size()) {
   filter_.bounds = filter.loose_bounds();
@@ -87,7 +89,9 @@ const PointHeader* SourceCoordinates::first_not_apart(const CommonLattice& commo
   return nullptr;
 }
 
+/// Coordinates beyond z are on no lattice, and all axes are to have one scale.
 void SourceCoordinates::find_lattice(const std::function<void(std::string_view)>& detail) {
+  if (!is_on_lattice_) return;
   const auto common = common_lattice();
   if (const PointHeader* mixed = common ? first_not_apart(*common) : nullptr) {
     detail(

@@ -30,7 +30,7 @@ class SourceCoordinates {
   /// Whether z is on lattice(), too: an integer, and not an output coordinate.
   [[nodiscard]] bool heights_on_lattice() const { return heights_on_lattice_; }
 
-  /// Axes that are triangulated.
+  /// Of x, y and z those that are triangulated.
   [[nodiscard]] int dimension() const { return dimension_; }
 
   /// A box of output coordinates in these coordinates.
@@ -72,6 +72,7 @@ class SourceCoordinates {
   [[nodiscard]] int joined_axes() const { return is_triangulated_ ? dimension_ : 0; }
 
   bool is_triangulated_;
+  bool is_on_lattice_;
   int dimension_;
   PointFilter filter_;  ///< its bounds are loose
   std::vector<Input> inputs_;

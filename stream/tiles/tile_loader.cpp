@@ -55,9 +55,9 @@ bool fit_together(const TileNode<D>& a, const TileNode<D>& b, std::size_t capaci
   if (points > capacity) return false;
   Box<D> both = a.box;
   both.expand(b.box);
-  const double times = aspect(both);
+  const double times = aspect(both, cut_axes(D));
   if (times <= kMostAspect) return true;
-  return std::min(aspect(a.box), aspect(b.box)) > kMostAspect &&
+  return std::min(aspect(a.box, cut_axes(D)), aspect(b.box, cut_axes(D))) > kMostAspect &&
          !too_long(static_cast<double>(points), times, capacity);
 }
 
@@ -114,21 +114,23 @@ struct TileLoader::Joinable {
 
 /// Appends all tiles below a node but the one that is returned.
 template <int D>
-TileLoader::Joinable<D> TileLoader::join_below(CutTree::NodeRef ref,
+TileLoader::Joinable<D> TileLoader::join_below(CutTree::NodeRef ref, const Box<D>& all,
                                                std::vector<TileNode<D>>& tiles) const {
   if (CutTree::is_tile(ref)) {
     const auto taken = taken_.find(CutTree::tile_at(ref));
     if (taken == taken_.end()) return {};
     const Tile& tile = taken->second;
     TileNode<D> node;
-    std::copy_n(tile.box.lo.begin(), D, node.box.lo.begin());
-    std::copy_n(tile.box.hi.begin(), D, node.box.hi.begin());
+    node.box = all;
+    std::copy_n(tile.box.lo.begin(), cut_axes(D), node.box.lo.begin());
+    std::copy_n(tile.box.hi.begin(), cut_axes(D), node.box.hi.begin());
     node.points = tile.points;
     node.stored = {CutTree::tile_at(ref)};
     return {std::move(node)};
   }
   const auto refs = table_.cuts.sides(ref);
-  std::array<Joinable<D>, 2> sides = {join_below<D>(refs[0], tiles), join_below<D>(refs[1], tiles)};
+  std::array<Joinable<D>, 2> sides = {join_below<D>(refs[0], all, tiles),
+                                      join_below<D>(refs[1], all, tiles)};
   auto& [below, above] = sides;
   if (!below.tile && !below.others) return std::move(above);
   if (!above.tile && !above.others) return std::move(below);
@@ -146,20 +148,25 @@ TileLoader::Joinable<D> TileLoader::join_below(CutTree::NodeRef ref,
 }
 
 template <int D>
-std::optional<TileNode<D>> TileLoader::nodes_below(CutTree::NodeRef ref) const {
+void TileLoader::sketch(std::vector<TileNode<D>>& tiles) const {
+  const auto stored = [this](std::uint32_t number) -> const Tile& { return taken_.at(number); };
+  isolated([&] {
+    parallel_for(tiles.size(), 1, [&](std::size_t, std::size_t t, std::size_t) {
+      sketches_.sketch<D>(tiles[t], stored, table_.points_to_come());
+    });
+  });
+}
+
+template <int D>
+std::optional<TileNode<D>> TileLoader::nodes_below(CutTree::NodeRef ref, const Box<D>& all) const {
   const std::shared_lock cuts_lock(table_.cuts_mutex);
   const std::lock_guard lock(taken_mutex_);
   std::vector<TileNode<D>> tiles;
-  Joinable<D> all = join_below<D>(ref, tiles);
-  if (all.tile) tiles.push_back(std::move(*all.tile));
+  Joinable<D> last = join_below<D>(ref, all, tiles);
+  if (last.tile) tiles.push_back(std::move(*last.tile));
   if (tiles.empty()) return std::nullopt;
-  if (tiles.size() > 1 || table_.options.plan != nullptr) {
-    const auto stored = [this](std::uint32_t number) -> const Tile& { return taken_.at(number); };
-    isolated([&] {
-      parallel_for(tiles.size(), 1, [&](std::size_t, std::size_t t, std::size_t) {
-        sketches_.sketch<D>(tiles[t], stored, table_.points_to_come());
-      });
-    });
+  if constexpr (cut_axes(D) == D) {
+    if (tiles.size() > 1 || table_.options.plan != nullptr) sketch(tiles);
   }
   return tree_over(std::move(tiles));
 }
@@ -235,10 +242,6 @@ TilePoints<D> TileLoader::decode(StoredTile stored) const {
   result.left_out = stored.left_out;
   result.resize(stored.points, table_.options.index, table_.options.record_size);
   std::size_t position = 0;
-  const auto put = [&](std::size_t first, const PointsView& some) {
-    for (std::size_t i = 0; i < some.size(); ++i) result.set(first + i, some.points[i]);
-    result.set_carried(first, some);
-  };
   for (StoredTile::Segment& segment : stored.segments) {
     const std::vector<EncodedBlock> blocks = find_blocks(segment.bytes, segment.where);
     std::vector<std::size_t> first(blocks.size());
@@ -253,11 +256,11 @@ TilePoints<D> TileLoader::decode(StoredTile stored) const {
         decode_points(
             std::span<const std::byte>(segment.bytes).subspan(blocks[b].offset, blocks[b].size),
             segment.where, points);
-        put(first[b], PointsView::of(points));
+        result.set(first[b], PointsView::of(points));
       }
     });
     segment.buffer.drain([&](const PointsView& points) {
-      put(position, points);
+      result.set(position, points);
       position += points.size();
     });
   }
@@ -265,11 +268,11 @@ TilePoints<D> TileLoader::decode(StoredTile stored) const {
 }
 
 #define SPILLWAY_INSTANTIATE(D)                                                           \
-  template std::optional<TileNode<D>> TileLoader::nodes_below<D>(CutTree::NodeRef) const; \
+  template std::optional<TileNode<D>> TileLoader::nodes_below<D>(CutTree::NodeRef, const Box<D>&) const; \
   template bool TileLoader::on_disk<D>(const TileNode<D>&) const;                         \
   template StoredTile TileLoader::read<D>(const TileNode<D>&);                            \
   template TilePoints<D> TileLoader::decode<D>(StoredTile) const;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 template <typename State>

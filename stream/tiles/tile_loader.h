@@ -28,9 +28,11 @@ class TileLoader {
   void take_below(CutTree::NodeRef ref);
 
   /// The balanced tree of those that have been taken below a node, neighbours that fit together
-  /// made one; nothing if they have no points. By any thread.
+  /// made one; nothing if they have no points. Along axes beyond z, on which none is cut, they have
+  /// the extent of `all`. By any thread.
   template <int D>
-  [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref) const;
+  [[nodiscard]] std::optional<TileNode<D>> nodes_below(CutTree::NodeRef ref,
+                                                       const Box<D>& all) const;
 
   /// Lets go of a tile and reads what is on the disk of it. By one thread at a time, but beside all
   /// others.
@@ -60,7 +62,10 @@ class TileLoader {
   template <int D>
   struct Joinable;
   template <int D>
-  Joinable<D> join_below(CutTree::NodeRef ref, std::vector<TileNode<D>>& tiles) const;
+  Joinable<D> join_below(CutTree::NodeRef ref, const Box<D>& all,
+                         std::vector<TileNode<D>>& tiles) const;
+  template <int D>
+  void sketch(std::vector<TileNode<D>>& tiles) const;
   [[nodiscard]] Tile take(std::uint32_t number);
 
   TileTable& table_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/geometry/dimensions.h"
+#include "stream/tiles/cuts/tile_cut.h"
 
 namespace spillway::stream {
 namespace {
@@ -64,10 +65,11 @@ TileNode<D> tree_of(std::span<TileNode<D>> tiles) {
     node.box.expand(tile.box);
     node.points += tile.points;
   }
-  const double longest = node.box.extent(node.box.longest_axis());
+  double longest = 0;
+  for (int k = 0; k < cut_axes(D); ++k) longest = std::max(longest, node.box.extent(k));
   Parting best;
   int sorted_along = -1;
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < cut_axes(D); ++k) {
     const double extent = node.box.extent(k);
     if (extent < kLeastExtent * longest) continue;
     sort_along(tiles, k);
@@ -90,7 +92,7 @@ TileNode<D> tree_over(std::vector<TileNode<D>> tiles) {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template TileNode<D> tree_over(std::vector<TileNode<D>>);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -88,7 +88,7 @@ void TileSketches::sketch(TileNode<D>& node,
 #define SPILLWAY_INSTANTIATE(D)          \
   template void TileSketches::sketch<D>( \
       TileNode<D>&, const std::function<const Tile&(std::uint32_t)>&, std::uint64_t) const;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -269,9 +269,9 @@ void TileTree::spill(PointBatch& batch) {
 }
 
 template <int D>
-std::optional<TileNode<D>> TileTree::take_nodes() {
+std::optional<TileNode<D>> TileTree::take_nodes(const Box<D>& all) {
   loader_.take_below(table_.cuts.root());
-  std::optional<TileNode<D>> root = loader_.nodes_below<D>(table_.cuts.root());
+  std::optional<TileNode<D>> root = loader_.nodes_below<D>(table_.cuts.root(), all);
   // What was known of tiles that were filled would take memory from those that are read.
   std::vector<Tile>(1).swap(table_.tiles);
   table_.cuts = CutTree(table_.options.dimension);
@@ -284,8 +284,9 @@ std::uint64_t TileTree::held_bytes() const {
   return bytes;
 }
 
-#define SPILLWAY_INSTANTIATE(D) template std::optional<TileNode<D>> TileTree::take_nodes<D>();
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+#define SPILLWAY_INSTANTIATE(D) \
+  template std::optional<TileNode<D>> TileTree::take_nodes<D>(const Box<D>&);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

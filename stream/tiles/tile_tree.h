@@ -91,12 +91,12 @@ class TileTree {
 
   /// The balanced tree of tiles, none of which is too large any more, neighbours that fit together
   /// made one; nothing if there are no points. Of all points, once and at the end, or of those in
-  /// one cell.
+  /// one cell. Along axes beyond z they have the extent of `all`.
   template <int D>
-  [[nodiscard]] std::optional<TileNode<D>> take_nodes();
+  [[nodiscard]] std::optional<TileNode<D>> take_nodes(const Box<D>& all = {});
   template <int D>
   [[nodiscard]] std::optional<TileNode<D>> take_cell(std::uint32_t cell) const {
-    return loader_.nodes_below<D>(table_.cell_roots[cell]);
+    return loader_.nodes_below<D>(table_.cell_roots[cell], {});
   }
 
   /// Its tiles, for who reads them. Beside fill(), too.

@@ -322,7 +322,7 @@ MergedBorder<D> merge_borders(std::span<Border<D>> children, std::span<const Tre
                                          MemoryBudget&, Task&, Kernel);                         \
   template MergedBorder<D> merge_borders(                                                       \
       std::span<Border<D>>, std::span<const TileNode<D>* const>, MemoryBudget&, Task&, Kernel);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -28,13 +28,14 @@ struct BorderVertex {
   StreamPlace place;
 };
 
-/// The vertex as a mesh has it, on the lattice.
+/// The vertex as a mesh has it, on the lattice. Its coordinates beyond z are among its attributes.
 template <int D>
 LatticePoint output_point(const BorderVertex<D>& vertex) {
+  const Point<D>& position = vertex.position;
   if constexpr (D == 2) {
-    return {vertex.position[0], vertex.position[1], vertex.height};
+    return {position[0], position[1], vertex.height};
   } else {
-    return LatticePoint(vertex.position);
+    return {position[0], position[1], position[2]};
   }
 }
 

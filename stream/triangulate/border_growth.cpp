@@ -125,7 +125,7 @@ std::uint64_t BorderGrowth<D>::enough_for(const Shortage& shortage) const {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class BorderGrowth<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

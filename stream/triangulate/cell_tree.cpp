@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/geometry/dimensions.h"
+#include "stream/tiles/cuts/tile_cut.h"
 
 namespace spillway::stream {
 
@@ -22,8 +23,8 @@ CellTree<D>::CellTree(const RegionPlan& plan)
     const RegionPlan::Cell& cell = plan.cells[c];
     if (cell.box.empty()) continue;
     nodes_[c] = std::make_shared<TileNode<D>>();
-    std::copy_n(cell.box.lo.begin(), D, nodes_[c]->box.lo.begin());
-    std::copy_n(cell.box.hi.begin(), D, nodes_[c]->box.hi.begin());
+    std::copy_n(cell.box.lo.begin(), cut_axes(D), nodes_[c]->box.lo.begin());
+    std::copy_n(cell.box.hi.begin(), cut_axes(D), nodes_[c]->box.hi.begin());
     nodes_[c]->points = static_cast<std::uint64_t>(std::ceil(cell.expected));
   }
   add(plan.cuts, plan.cuts.root(), std::nullopt);
@@ -116,7 +117,7 @@ void CellTree<D>::add_last_join(Completion& done) {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class CellTree<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -191,7 +191,7 @@ LeafFates test_leaf_border(const LeafToSettle<D>& leaf, const Surroundings<D>& s
 #define SPILLWAY_INSTANTIATE(D)                                                             \
   template LeafFates search_leaf_border(const LeafPart<D>&, Surroundings<D>, BaseCase<D>&); \
   template LeafFates test_leaf_border(const LeafToSettle<D>&, const Surroundings<D>&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -44,11 +44,11 @@ WorkForecast SampleForecast<D>::forecast() const {
   if (sample_.empty()) return {};
   return WorkForecast::of(
       {.points = sample_.size() / kPart, .simplices = count_simplices<D>(sample_, kPart)},
-      {.points = sample_.size(), .simplices = count_simplices<D>(sample_, 1)}, kBytesOfSimplex);
+      {.points = sample_.size(), .simplices = count_simplices<D>(sample_, 1)}, D, kBytesOfSimplex);
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class SampleForecast<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -272,7 +272,7 @@ Settled<D> settle(const Part<D>& part, const OutputOptions& output) {
 #define SPILLWAY_INSTANTIATE(D)                                              \
   template Settled<D> settle(const MergeToSettle<D>&, const OutputOptions&); \
   template Settled<D> settle(const LeafToSettle<D>&, const OutputOptions&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

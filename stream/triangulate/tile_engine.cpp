@@ -22,13 +22,11 @@ constexpr std::size_t kTilesAtATime = 2;
 
 template <int D>
 void count_shape(const Box<D>& box, TileShapes& shapes) {
-  const double longest = box.extent(box.longest_axis());
-  double shortest = longest;
-  for (int k = 0; k < D; ++k) shortest = std::min(shortest, box.extent(k));
-  if (longest <= 2 * shortest) {
+  const double times = aspect(box, cut_axes(D));
+  if (times <= 2) {
     ++shapes.up_to_twice;
   } else {
-    ++(longest <= 4 * shortest ? shapes.up_to_4_times : shapes.longer);
+    ++(times <= 4 ? shapes.up_to_4_times : shapes.longer);
   }
 }
 
@@ -45,7 +43,7 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& blocks, con
       counts_(budget_),
       held_points_(budget_),
       sketches_(budget_),
-      sees_extent_(expected.see_extent),
+      sees_extent_(expected.see_extent || cut_axes(D) < D),
       expected_points_(expected.count.value_or(0)),
       tree_(tree_options(expected), setup.scratch, counts_.times, *this),
       sequencer_(blocks, budget_, {.max_edge = options_.asked.max_edge}, counts_.times),
@@ -94,14 +92,14 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
   if (options_.buffered_points > 0) plan_.buffered_points = options_.buffered_points;
   const bool index = options_.asked.input_index || expected.ordered_by_index;
   if (index) plan_.buffered_points = plan_.buffered_points * 3 / 4;
-  return {.dimension = D,
+  return {.dimension = cut_axes(D),
           .capacity = plan_.tile_points,
           .buffered_points = plan_.buffered_points,
           .expected = expected.count,
           .extent = expected.extent,
           .index = index,
           .record_size = options_.record_size,
-          .sketch_bytes = plan_.sketch_bytes,
+          .sketch_bytes = cut_axes(D) < D ? 0 : plan_.sketch_bytes,
           .batches = plan_.batches,
           .plan = expected.plan,
           .largest_undivided = std::min(
@@ -112,8 +110,8 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
 template <int D>
 void TileEngine<D>::decoded(const PointBlock& points) {
   budget_.give_back_freed();
-  span_.add(points.points);
-  if (sees_extent_) seen_.add(points);
+  span_.add(PointsView::of(points));
+  if (sees_extent_) seen_.add(PointsView::of(points));
 }
 
 template <int D>
@@ -201,7 +199,7 @@ void TileEngine<D>::begin_triangulating(std::uint64_t points, std::uint64_t all_
 
 template <int D>
 const std::optional<TileNode<D>>& TileEngine<D>::take_nodes() {
-  if (!root_) root_ = tree_.template take_nodes<D>();
+  if (!root_) root_ = tree_.template take_nodes<D>(seen_.box());
   return root_;
 }
 
@@ -476,7 +474,7 @@ RunStatistics TileEngine<D>::statistics() {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class TileEngine<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

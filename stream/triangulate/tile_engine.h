@@ -85,7 +85,7 @@ class TileEngine : private DealingWatch {
 
   /// What the points of the feed span, and the box around them.
   [[nodiscard]] const PointSpan<D>& span() const { return span_; }
-  [[nodiscard]] const Box<2>& seen_extent() const { return seen_.box(); }
+  [[nodiscard]] const Box<D>& seen_extent() const { return seen_.box(); }
 
   /// Calls this for the indices of each tile's points when it is loaded, to put others there.
   void replace_indices(std::function<void(std::span<std::uint64_t> index)> replace) {
@@ -173,7 +173,7 @@ class TileEngine : private DealingWatch {
   PointSpan<D> span_;
   bool grows_capacity_ = false;  ///< of tiles, with the points that come
   const bool sees_extent_;
-  SeenExtent seen_;
+  SeenExtent<D> seen_;
   const std::uint64_t expected_points_;  ///< 0: not known
   TileTree tree_;
   Sequencer<D> sequencer_;

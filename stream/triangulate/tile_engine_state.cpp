@@ -68,7 +68,7 @@ void TileEngine<D>::state(State& state) {
   template void TileEngine<D>::add_restored_cells();            \
   template void TileEngine<D>::state(StateReader&);             \
   template void TileEngine<D>::state(StateWriter&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

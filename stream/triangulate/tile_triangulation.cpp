@@ -411,7 +411,7 @@ MergedTiles<D> merge_tiles(const TileContext<D>& context, const MergeInput<D>& i
   template std::size_t largest_undivided<D>(std::uint64_t, std::size_t);           \
   template Border<D> triangulate_tile(const TileContext<D>&, TileInput<D>, Task&); \
   template MergedTiles<D> merge_tiles(const TileContext<D>&, const MergeInput<D>&, Task&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

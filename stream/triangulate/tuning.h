@@ -4,13 +4,20 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "src/rooms.h"
 
 namespace spillway::stream {
 
+/// The general ones, for D > 3, where a point has about 32, 190 or 1,300 simplices.
 template <int D>
-struct TileTuning;
+struct TileTuning {
+  static constexpr std::size_t kSmallestJudged = std::numeric_limits<std::size_t>::max();
+  static constexpr std::uint64_t kLeafBytes = D == 4 ? 5'000 : D == 5 ? 36'000 : 300'000;
+  static constexpr std::uint64_t kMergeBytes = 2 * kLeafBytes;
+  static constexpr std::uint64_t kAllBorderMergeBytes = 2 * kLeafBytes;
+};
 
 template <>
 struct TileTuning<2> {

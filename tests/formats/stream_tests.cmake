@@ -9,6 +9,7 @@ spillway_test(mesh_streams_test unit
     formats/meshes/spool/spm_section_test.cpp
     formats/meshes/spm/spm_attributes_test.cpp
     formats/meshes/spm/spm_test.cpp
+    formats/meshes/spm/spm_simplices_test.cpp
     formats/meshes/spm/spm_tetrahedra_test.cpp
     formats/meshes/spool/spooled_mesh_writer_test.cpp
   LIBS spillway_formats spillway_delaunay spillway_generators fmt::fmt)

@@ -7,7 +7,7 @@ namespace {
 
 /// Of samples of 1,000 and 4,000 points, where so many simplices take a byte each.
 WorkForecast by_samples(std::size_t smaller, std::size_t larger) {
-  return WorkForecast::of({1'000, smaller}, {4'000, larger}, 1);
+  return WorkForecast::of({1'000, smaller}, {4'000, larger}, 3, 1);
 }
 
 TEST(WorkForecast, GrowsAsTheSamplesDoAndALittleFaster) {
@@ -28,12 +28,12 @@ TEST(WorkForecast, LiesBetweenInProportionAndBySquares) {
 
 TEST(WorkForecast, TakesTheWorstWhereTheSamplesSayNothing) {
   EXPECT_DOUBLE_EQ(by_samples(0, 24'000).exponent, 2);
-  EXPECT_DOUBLE_EQ(WorkForecast::of({}, {4'000, 24'000}, 1).exponent, 2);
-  EXPECT_DOUBLE_EQ(WorkForecast::of({4'000, 24'000}, {4'000, 24'000}, 1).exponent, 2);
+  EXPECT_DOUBLE_EQ(WorkForecast::of({}, {4'000, 24'000}, 3, 1).exponent, 2);
+  EXPECT_DOUBLE_EQ(WorkForecast::of({4'000, 24'000}, {4'000, 24'000}, 3, 1).exponent, 2);
 }
 
 TEST(WorkForecast, OfFewerPointsIsNotLessThanTheSampleTook) {
-  const WorkForecast forecast = WorkForecast::of({1'000, 6'000}, {4'000, 24'000}, 10);
+  const WorkForecast forecast = WorkForecast::of({1'000, 6'000}, {4'000, 24'000}, 3, 10);
   EXPECT_DOUBLE_EQ(forecast.bytes_for(10), 240'000);
   EXPECT_DOUBLE_EQ(forecast.bytes_for(0), 240'000);
 }

@@ -14,6 +14,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/stream_numbers.h"
 #include "formats/meshes/common/stream_vertices.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/common/point_writer.h"
 #include "formats/points/create_points.h"
 #include "stream/pipeline.h"
@@ -48,10 +49,12 @@ inline bool carries_attributes(const EngineOptions& options) { return options.th
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
 /// their last use, once each, and that a block imports what it uses or finalizes, and nothing else;
-/// and that attributes, if there are any, are those of the point with the vertex' index.
+/// and that attributes, if there are any besides coordinates, are those of the point with the vertex'
+/// index.
 class KeepingWriter : public BlockSink {
  public:
-  explicit KeepingWriter(int dimension) : corners_(dimension + 1) {}
+  explicit KeepingWriter(int dimension)
+      : corners_(dimension + 1), coordinates_(further_axes(dimension) * sizeof(double)) {}
 
   void write(MeshStreamBlock&& block) override {
     ASSERT_EQ(block.corners.size() % corners_, 0U);
@@ -77,8 +80,9 @@ class KeepingWriter : public BlockSink {
     }
     vertices.insert(vertices.end(), block.vertices.begin(), block.vertices.end());
     index.insert(index.end(), block.input_index.begin(), block.input_index.end());
-    if (!block.attributes.empty()) expect_attributes_of(block.input_index, block.attributes);
-    has_attributes |= !block.attributes.empty();
+    const std::vector<std::byte> attributes = without_coordinates(block);
+    if (!attributes.empty()) expect_attributes_of(block.input_index, attributes);
+    has_attributes |= !attributes.empty();
     most_live = std::max(most_live, live_.size());
     blocks.push_back(std::move(block));
   }
@@ -93,7 +97,20 @@ class KeepingWriter : public BlockSink {
   bool has_attributes = false;
 
  private:
+  [[nodiscard]] std::vector<std::byte> without_coordinates(const MeshStreamBlock& block) const {
+    if (coordinates_ == 0 || block.vertices.empty()) return block.attributes;
+    const std::size_t size = block.attributes.size() / block.vertices.size();
+    std::vector<std::byte> others;
+    for (auto record = block.attributes.begin(); record != block.attributes.end();
+         record += static_cast<std::ptrdiff_t>(size)) {
+      others.insert(others.end(), record + static_cast<std::ptrdiff_t>(coordinates_),
+                    record + static_cast<std::ptrdiff_t>(size));
+    }
+    return others;
+  }
+
   std::size_t corners_;
+  std::size_t coordinates_;  ///< bytes of those beyond z in a record
   StreamVertices<std::monostate> live_;
 };
 
@@ -103,17 +120,18 @@ template <int D>
 std::string write_points(const std::vector<Point<D>>& points, std::uint64_t first_number = 0) {
   const std::string path = ::testing::TempDir() + "points" + std::to_string(::getpid()) + ".npy";
   PointWriterOptions options;
-  options.coordinates = D;
+  options.coordinates = std::min(D, kOwnAxes);
   options.count = points.size();
-  options.attributes = number_attributes();
+  std::vector<Attribute> attributes = further_coordinates(D).attributes();
+  for (const Attribute& number : number_attributes().attributes()) attributes.push_back(number);
+  options.attributes = AttributeLayout(std::move(attributes));
   const auto writer = open_point_writer(disk(), path, options);
   std::vector<LatticePoint> block;
   std::vector<std::byte> records;
   for (const Point<D>& p : points) {
+    append_further_coordinates<D>(p, records);
     append_number_record(first_number + block.size(), records);
-    LatticePoint point{};
-    std::copy(p.begin(), p.end(), point.begin());
-    block.push_back(point);
+    block.emplace_back(own_coordinates<D>(p));
   }
   writer->write(block, records);
   writer->finish();
@@ -131,10 +149,8 @@ StreamRun run_stream(const std::string& path, EngineOptions options,
   StreamRun run{{}, KeepingWriter(D)};
   options.asked.input_index = true;
   JoinedInputs source(disk(), {path}, {.dimension = D, .index = true});
-  if (carries_attributes(options)) {
-    source.carry({.all = true});
-    options.record_size = source.attributes().record_size();
-  }
+  if (carries_attributes(options)) source.carry({.all = true});
+  options.record_size = source.attributes().record_size();
   QuietSetup setup(options, memory);
   run.statistics = triangulate_stream<D>(source, run.mesh, setup);
   EXPECT_EQ(run.mesh.has_attributes, carries_attributes(options));

@@ -29,6 +29,11 @@ spillway_test(stream_property_test property
   LIBS spillway_stream spillway_generators cgal_oracle
   TIMEOUT 900)
 
+spillway_test(stream_nd_test property
+  SOURCES stream/higher_dimensions_test.cpp
+  LIBS spillway_stream spillway_generators cgal_oracle_nd
+  TIMEOUT 600)
+
 spillway_test(stream_fault_test fault
   SOURCES stream/stream_fault_test.cpp
   LIBS spillway_stream spillway_generators)

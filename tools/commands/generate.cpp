@@ -149,7 +149,7 @@ Subcommand add_generate(CommandLine& root) {
               parse_point_count)
       .required()
       .value_name("N");
-  add_dimension(app, options->dimension, "Dimension; terrain and scan always have z");
+  add_dimension(app, options->dimension, "Dimension; terrain and scan always have z", 6);
   take_whole_number(app.add_option("--seed", options->seed, "Another seed, other points"))
       .value_name("S")
       .show_default();

@@ -124,6 +124,10 @@ Json mesh_json(const std::string& path, const MeshInfo& info) {
   json["hull_facets"] = info.totals.hull_facets;
   json["canonical_hash"] = hash_to_hex(info.totals.canonical_hash);
   json["extent"] = extent_json(info.extent, 3);
+  for (const auto& [least, largest] : info.further_extent) {
+    json["extent"]["min"].push_back(least);
+    json["extent"]["max"].push_back(largest);
+  }
   add_lattice(info.lattice, json);
   json["on_lattice"] = info.lattice.has_value();
   json["input_index"] = info.has_input_index;

@@ -121,10 +121,14 @@ std::optional<std::vector<std::string>> attribute_names(const std::string& list)
   return names;
 }
 
-Option add_dimension(CommandLine& app, int& dimension, const std::string& description) {
+Option add_dimension(CommandLine& app, int& dimension, const std::string& description,
+                     int largest) {
+  std::vector<std::string> dimensions;
+  for (int d = 2; d <= largest; ++d) dimensions.push_back(std::to_string(d));
+  const std::string names = fmt::format("{}", fmt::join(dimensions, "|"));
   return app.add_option("--dim", dimension, description)
-      .one_of({"2", "3"})
-      .value_name("2|3")
+      .one_of(dimensions)
+      .value_name(names)
       .show_default(std::to_string(dimension));
 }
 

@@ -74,8 +74,9 @@ Option add_attributes(CommandLine& app, std::string& list, const std::string& de
 /// The names that --attributes gives, none for "none"; nothing if it is not given.
 std::optional<std::vector<std::string>> attribute_names(const std::string& list);
 
-/// --dim: 2 or 3.
-Option add_dimension(CommandLine& app, int& dimension, const std::string& description);
+/// --dim: 2 to the largest.
+Option add_dimension(CommandLine& app, int& dimension, const std::string& description,
+                     int largest = 3);
 
 /// A finite decimal number, like 12, -0.5 or 1e6; nothing for any other text, hexadecimal numbers
 /// and such with blanks included.

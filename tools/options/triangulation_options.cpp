@@ -96,9 +96,10 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
 }
 
 void check_duplicates(const TriangulationOptions& options, int dimension) {
-  if (dimension != 3) return;
+  if (dimension == 2) return;
   refuse_given(*options.app, {"--heights"},
-               "with --dim 3, as it chooses a height for points of equal x and y");
+               fmt::format("with --dim {}, as it chooses a height for points of equal x and y",
+                           dimension));
 }
 
 void check_heights(const TriangulationOptions& options, const PointsHeader& points) {

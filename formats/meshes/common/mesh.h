@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/points/attributes/attribute_layout.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 
@@ -23,7 +24,7 @@ struct IdRange {
 
 /// What a mesh file says about itself.
 struct MeshFileHeader {
-  int dimension = 2;             ///< 2: triangles, 3: tetrahedra
+  int dimension = 2;             ///< 2: triangles, 3: tetrahedra, up to 6
   std::uint64_t vertices = 0;    ///< number of vertices
   std::uint64_t simplices = 0;   ///< number of finite simplices
   bool has_input_index = false;  ///< each vertex carries its index in the input
@@ -33,7 +34,7 @@ struct MeshFileHeader {
   /// Of a part of a larger mesh: which of its vertices these are. Only PLY and VTU have a place for
   /// them; readers pass over it.
   std::optional<std::vector<IdRange>> global_ids{};
-  AttributeLayout attributes{};  ///< that each vertex carries
+  AttributeLayout attributes{};  ///< that each vertex carries; first its coordinates beyond z
   /// Whether all numbers of the attributes `red`, `green` and `blue` are known to be below 256:
   /// then they are bytes, though they may be of 16 bits, as LAS has no others.
   bool colours_are_bytes = false;
@@ -51,6 +52,12 @@ struct Mesh {
   std::vector<std::string> notices{};
 
   [[nodiscard]] std::size_t corners_per_simplex() const { return header.dimension + 1; }
+  /// All coordinates of a vertex in output coordinates.
+  template <int D>
+  [[nodiscard]] Point<D> vertex(std::size_t v) const {
+    const std::size_t record_size = header.attributes.record_size();
+    return coordinates_of<D>(vertices[v], D > kOwnAxes ? &attributes[v * record_size] : nullptr);
+  }
 };
 
 }  // namespace spillway::formats

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/points/attributes/attribute_layout.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
@@ -23,14 +24,14 @@ class StateWriter;
 
 /// What a mesh stream says before its first block.
 struct MeshStreamHeader {
-  int dimension = 2;             ///< 2: triangles with z carried along, 3: tetrahedra
+  int dimension = 2;             ///< 2: triangles with z carried along, 3: tetrahedra, up to 6
   bool has_input_index = false;  ///< each vertex carries its index in the input
   std::optional<IntegerLattice>
       lattice;                          ///< set if the coordinates of blocks are to be mapped by it
   std::optional<std::uint64_t> points;  ///< of the input, where known beforehand
   std::optional<Box<3>> extent;         ///< of the points, in output coordinates, where known
   std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
-  AttributeLayout attributes;           ///< that vertices carry
+  AttributeLayout attributes;           ///< that vertices carry; first their coordinates beyond z
 };
 
 /// What a sink makes of a block by itself, before its turn has come: each sink has its own kind.
@@ -59,6 +60,13 @@ struct MeshStreamBlock {
   std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
   /// What a sink's absorb() made of the members above (`imported` apart); null before.
   std::shared_ptr<const AbsorbedBlock> absorbed;
+
+  /// All coordinates of one of `vertices`, as they stand here.
+  template <int D>
+  [[nodiscard]] Point<D> vertex(std::size_t v) const {
+    const std::size_t record_size = attributes.size() / vertices.size();
+    return coordinates_of<D>(vertices[v], D > kOwnAxes ? &attributes[v * record_size] : nullptr);
+  }
 
   /// Bytes that its members take, counted by their sizes.
   [[nodiscard]] std::uint64_t bytes() const {

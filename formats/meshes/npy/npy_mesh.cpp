@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
+#include <utility>
 
 #include "formats/bytes/buffered_input.h"
 #include "formats/bytes/number_type.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/attributes/record_conversion.h"
 #include "formats/points/npy/npy_header.h"
 #include "formats/points/npy/npy_layout.h"
 #include "src/error.h"
+#include "src/geometry/simplex_name.h"
 
 namespace spillway::formats {
 namespace {
@@ -74,7 +78,7 @@ class ArrayInput {
     const bool flat = most == 0;
     if (shape.size() != (flat ? 1 : 2) || (!flat && (shape[1] < least || shape[1] > most))) {
       fail(fmt::format("the array has shape ({}), but {} is needed", fmt::join(shape, ", "),
-                       flat ? "n" : fmt::format("n x {} or n x {}", least, most)));
+                       flat ? "n" : fmt::format("n x {} to n x {}", least, most)));
     }
   }
 
@@ -168,14 +172,15 @@ class ArrayInput {
 /// Returns the number of coordinates of a vertex.
 int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
   ArrayInput array(files, path);
-  array.check_shape(2, 3);
+  array.check_shape(2, 6);
   array.check_reals();
   mesh.header.vertices = array.rows();
   const std::uint64_t columns = array.columns();
+  mesh.header.attributes = further_coordinates(static_cast<int>(columns));
   array.read_rows(
       columns, [&](std::uint64_t rows) { mesh.vertices.reserve(rows); },
       [&](const std::byte* row) {
-        WorldPoint point{};
+        Point<6> point{};
         for (std::uint64_t axis = 0; axis < columns; ++axis) {
           point[axis] = array.number(row, axis);
           if (!std::isfinite(point[axis])) {
@@ -183,23 +188,25 @@ int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
                 fmt::format("the vertex has the coordinate {}, not finite", point[axis]));
           }
         }
-        mesh.vertices.push_back(point);
+        mesh.vertices.emplace_back(own_coordinates<6>(point));
+        append_further_coordinates<6>(point, mesh.attributes);
+        mesh.attributes.resize(mesh.vertices.size() * mesh.header.attributes.record_size());
       });
   return static_cast<int>(columns);
 }
 
 void read_simplices(FileSystem& files, const std::string& path, int coordinates, Mesh& mesh) {
   ArrayInput array(files, path);
-  array.check_shape(3, 4);
+  array.check_shape(3, 7);
   array.check_integers();
   const std::uint64_t columns = array.columns();
   mesh.header.simplices = array.rows();
   mesh.header.dimension = static_cast<int>(columns) - 1;
-  if (mesh.header.dimension > coordinates) {
-    array.fail(
-        fmt::format("these are tetrahedra, but the vertices have {} coordinates; save them "
-                    "as n x 3",
-                    coordinates));
+  const int needed = std::max(mesh.header.dimension, std::min(coordinates, kOwnAxes));
+  if (coordinates != needed) {
+    array.fail(fmt::format(
+        "these are {}, but the vertices have {} coordinates; save them as n x {}",
+        simplices_text(mesh.header.dimension), coordinates, needed));
   }
   array.read_rows(
       columns, [&](std::uint64_t rows) { mesh.corners.reserve(rows * columns); },
@@ -241,8 +248,9 @@ void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
                                layout.count, count));
   }
   const std::vector<AttributeField>& fields = layout.row.attributes();
-  std::vector<Attribute> attributes;
-  attributes.reserve(fields.size());
+  std::vector<Attribute> attributes = mesh.header.attributes.attributes();
+  const std::vector<std::byte> coordinates = std::exchange(mesh.attributes, {});
+  const std::size_t of_vertex = mesh.header.attributes.record_size();
   for (const AttributeField& field : fields) attributes.push_back(field.attribute);
   mesh.header.attributes = AttributeLayout(std::move(attributes));
   mesh.notices.insert(mesh.notices.end(), layout.notices.begin(), layout.notices.end());
@@ -265,6 +273,9 @@ void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
     mesh.attributes.resize((read + some) * record);
     if (conversion.convert(piece.data(), row, &mesh.attributes[read * record], record, some)) {
       throw std::logic_error("the layout does not hold the numbers of its source");
+    }
+    for (std::uint64_t v = read; v < read + some; ++v) {
+      std::copy_n(&coordinates[v * of_vertex], of_vertex, &mesh.attributes[v * record]);
     }
     read += some;
   }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "formats/bytes/buffered_output.h"
 #include "formats/bytes/bytes.h"
@@ -9,6 +11,7 @@
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/vertex_records.h"
 #include "formats/meshes/npy/npy_mesh.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/attributes/unique_names.h"
 #include "formats/points/npy/npy_fields.h"
 #include "formats/points/npy/npy_header.h"
@@ -49,6 +52,10 @@ NpyHeader array_of(std::string type, std::vector<std::uint64_t> shape) {
   return header;
 }
 
+std::uint64_t columns_of(const MeshFileHeader& header) {
+  return std::uint64_t(std::max(kOwnAxes, header.dimension));
+}
+
 /// A structured array, whose elements have a field for each attribute.
 NpyHeader array_of_records(const AttributeLayout& layout, std::uint64_t count) {
   NpyHeader header = array_of("structure", {count});
@@ -61,14 +68,15 @@ class NpyMeshWriter : public CheckedMeshWriter {
  public:
   NpyMeshWriter(MeshFiles files, const MeshFileHeader& header)
       : CheckedMeshWriter(header, files.main->name()),
-        vertices_(std::move(files.main), array_of("<f8", {header.vertices, 3})),
+        vertices_(std::move(files.main), array_of("<f8", {header.vertices, columns_of(header)})),
         simplices_(std::move(files.simplices),
                    array_of("<i8", {header.simplices, corners_per_simplex()})),
-        records_(header, without_scales(header.attributes)) {
+        records_(header, without_scales(without_further_coordinates(header.attributes,
+                                                                    header.dimension))) {
     if (header.has_input_index) {
       input_index_.emplace(std::move(files.input_index), array_of("<i8", {header.vertices}));
     }
-    if (!header.attributes.empty()) {
+    if (!records_.layout().empty()) {
       attributes_.emplace(std::move(files.attributes),
                           array_of_records(records_.layout(), header.vertices));
     }
@@ -78,9 +86,24 @@ class NpyMeshWriter : public CheckedMeshWriter {
   void put_vertices(std::span<const WorldPoint> vertices,
                     std::span<const std::uint64_t> input_index,
                     std::span<const std::byte> attributes) override {
-    vertices_.append(vertices);
+    put_coordinates(vertices, attributes);
     if (input_index_) input_index_->append(input_index);
     if (attributes_) attributes_->append(records_.convert(attributes, 0));
+  }
+
+  /// A row of all coordinates for each vertex.
+  void put_coordinates(std::span<const WorldPoint> vertices, std::span<const std::byte> records) {
+    if (further_axes(header().dimension) == 0) return vertices_.append(vertices);
+    const std::size_t record_size = header().attributes.record_size();
+    const std::size_t further = further_axes(header().dimension) * sizeof(double);
+    rows_.clear();
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      const auto own = std::as_bytes(std::span(vertices[v]));
+      rows_.insert(rows_.end(), own.begin(), own.end());
+      const auto beyond = records.subspan(v * record_size, further);
+      rows_.insert(rows_.end(), beyond.begin(), beyond.end());
+    }
+    vertices_.append(std::span<const std::byte>(rows_));
   }
 
   void put_simplices(std::span<const std::uint64_t> corners) override {
@@ -101,6 +124,7 @@ class NpyMeshWriter : public CheckedMeshWriter {
   }
 
   ArrayOutput vertices_;
+  std::vector<std::byte> rows_;  ///< of vertices that are being written
   ArrayOutput simplices_;
   std::optional<ArrayOutput> input_index_;
   VertexRecords records_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -11,7 +12,9 @@
 #include "formats/meshes/common/mesh_notes.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_format.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/spp/spp_attributes.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/lattice_check.h"
 
 namespace spillway::formats {
@@ -62,8 +65,8 @@ class SpmReader : public MeshStreamReader {
   void parse_header() {
     const std::uint32_t version = stream_.take_version();
     const auto dimension = stream_.take<std::uint32_t>();
-    if (dimension != 2 && dimension != 3) stream_.fail("the dimension is neither 2 nor 3");
-    header_.dimension = static_cast<int>(dimension);
+    header_.dimension = static_cast<int>(std::min<std::uint32_t>(dimension, 100));
+    if (!is_dimension(header_.dimension)) stream_.fail("the dimension is none of 2 to 6");
     const auto flags = stream_.take<std::uint32_t>();
     constexpr std::uint32_t kKnown =
         kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex;
@@ -77,6 +80,12 @@ class SpmReader : public MeshStreamReader {
     if ((flags & kSpmHasPoints) != 0) header_.points = stream_.take<std::uint64_t>();
     if ((flags & kSpmHasExtent) != 0) header_.extent = stream_.take_extent();
     if (version == kSpmAttributesVersion) header_.attributes = take_attribute_list(stream_);
+    if (!has_further_coordinates(header_.attributes, header_.dimension)) {
+      stream_.fail("the coordinates beyond z are missing among the attributes");
+    }
+    if (header_.lattice && further_axes(header_.dimension) > 0) {
+      stream_.fail("there is a lattice, but coordinates beyond z are on none");
+    }
     header_.crs = as_text(stream_.left());
   }
 

@@ -169,7 +169,7 @@ template <bool kHasOrderKeys>
 
 template <bool kHasOrderKeys>
 WorkForecast Insertion<kHasOrderKeys>::forecast() const {
-  return WorkForecast::of(before_, sample_, CellMemory::kBytesOfRecord);
+  return WorkForecast::of(before_, sample_, 3, CellMemory::kBytesOfRecord);
 }
 
 /// The half-spaces of the star's infinite cells. Those in conflict with the next point join the

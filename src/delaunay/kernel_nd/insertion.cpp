@@ -334,7 +334,7 @@ void Insertion<D>::choose_hint(VertexId next) {
 
 template <int D>
 WorkForecast Insertion<D>::forecast() const {
-  return WorkForecast::of(before_, sample_, SimplexMemory<D>::kBytesOfRecord);
+  return WorkForecast::of(before_, sample_, D, SimplexMemory<D>::kBytesOfRecord);
 }
 
 template <int D>

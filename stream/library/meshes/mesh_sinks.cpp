@@ -1,9 +1,13 @@
 #include <spillway/mesh.h>
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "formats/vectors/vector_file.h"
+#include "src/error.h"
+#include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/engine_sink.h"
 
@@ -38,6 +42,15 @@ std::unique_ptr<MeshSink> mesh_to(std::function<void(const MeshBlock&)> take) {
 
 MeshInMemory::MeshInMemory(std::vector<std::string> attributes) : wanted_(std::move(attributes)) {}
 MeshInMemory::~MeshInMemory() = default;
+
+std::span<const double> MeshInMemory::coordinate_column(int axis) const {
+  if (axis >= header_.dimension) {
+    throw stream::InvalidArgument(fmt::format("a mesh of {} dimensions has no coordinate {}",
+                                      header_.dimension, axis + 1));
+  }
+  const Attribute& attribute = header_.attributes.at(static_cast<std::size_t>(axis - 3));
+  return attributes_.values<double>(attribute.name);
+}
 
 void MeshInMemory::begin(const MeshHeader& header) {
   header_ = header;
@@ -79,7 +92,8 @@ void check_max_edge(const std::optional<double>& max_edge) {
 
 void refuse_tetrahedra(const MeshStart& start) {
   if (start.header.dimension == 2) return;
-  throw Failure(start.name + ": a terrain is a mesh of triangles, and this one is of tetrahedra",
+  throw Failure(fmt::format("{}: a terrain is a mesh of triangles, and this one is of {}",
+                            start.name, simplices_text(start.header.dimension)),
                 ErrorCode::kDegenerateInput, {.file = start.name});
 }
 

@@ -157,7 +157,8 @@ MeshHeader OpenedMesh::header() const {
   return {.dimension = mesh.header.dimension,
           .has_input_index = mesh.header.has_input_index,
           .crs = mesh.header.crs,
-          .lattice = public_lattice(stream_lattice(mesh))};
+          .lattice = public_lattice(stream_lattice(mesh)),
+          .attributes = mesh.header.attributes.attributes()};
 }
 
 bool OpenedMesh::read(MeshBlock& block) {

@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "formats/meshes/common/mesh_block.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "src/geometry/lattice_check.h"
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
@@ -100,8 +102,17 @@ MeshBlock public_block(const MeshStreamHeader& header, MeshStreamBlock&& block,
 
 ProgramBlocks::ProgramBlocks(const MeshHeader& header)
     : header_(stream_header(header)), told_(header_.attributes) {
-  if (header.dimension != 2 && header.dimension != 3) {
-    throw InvalidArgument(fmt::format("a mesh has 2 or 3 dimensions, not {}", header.dimension));
+  if (!is_dimension(header.dimension)) {
+    throw InvalidArgument(fmt::format("a mesh has 2 to 6 dimensions, not {}", header.dimension));
+  }
+  if (!has_further_coordinates(header_.attributes, header.dimension)) {
+    throw InvalidArgument(
+        fmt::format("the first attributes of a mesh of {0} dimensions are its coordinates beyond z: "
+                    "x4 to x{0}, a float64 each, without a scale",
+                    header.dimension));
+  }
+  if (header.lattice && further_axes(header.dimension) > 0) {
+    throw InvalidArgument("a mesh has a lattice, but coordinates beyond z are on none");
   }
 }
 
@@ -208,6 +219,18 @@ void ProgramBlocks::check_told(const Point<3>& told, const spillway::Point<3>& v
   }
 }
 
+void ProgramBlocks::check_further(const MeshStreamBlock& block) const {
+  const CoordinateCheck check(header_.attributes, header_.dimension);
+  const std::size_t record_size = header_.attributes.record_size();
+  if (further_axes(header_.dimension) == 0) return;
+  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
+    const std::byte* const record = &block.attributes[v * record_size];
+    const int axis = check.bad_axis(record);
+    if (axis == 0) continue;
+    throw InvalidArgument(fmt::format("vertex {} has {}", vertices_ + v, check.text(axis, record)));
+  }
+}
+
 MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   check(block);
   ShortNumbers numbers(block);
@@ -215,6 +238,7 @@ MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
   stream.attributes = records_of(block.attributes, header_.attributes, 0, block.vertices.size());
+  check_further(stream);
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));
   stream.finalized.reserve(block.finalized.size());

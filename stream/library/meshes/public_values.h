@@ -45,6 +45,7 @@ class ProgramBlocks {
   void check_inside(const spillway::Point<3>& vertex, std::uint64_t number) const;
   [[nodiscard]] std::vector<LatticePoint> vertices_of(const MeshBlock& block) const;
   [[nodiscard]] LatticePoint found(const spillway::Point<3>& vertex, std::uint64_t number) const;
+  void check_further(const MeshStreamBlock& block) const;
   void check_told(const Point<3>& told, const spillway::Point<3>& vertex,
                   std::uint64_t number) const;
 

@@ -15,6 +15,7 @@
 #include "formats/meshes/common/mesh_block.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
+#include "src/geometry/simplex_name.h"
 #include "stream/checker/checker.h"
 
 namespace spillway::stream {
@@ -56,7 +57,7 @@ FacetCounts count_facets(const Mesh& mesh) {
 }
 
 FacetCounts facets_of(const Mesh& mesh) {
-  return with_streamed_dimension(mesh.header.dimension,
+  return with_dimension(mesh.header.dimension,
                                  [&](auto d) { return count_facets<d>(mesh); });
 }
 
@@ -145,11 +146,11 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
 
 void WholeMesh::refuse_crowded_facet(const std::string& name) const {
   if (crowded_.empty()) return;
-  const bool plane = header_.dimension == 2;
   throw Failure(
       fmt::format("{}: more than two {} have the {} of the vertices {} (counted from 0), which spm "
                   "cannot hold; remove what is there twice",
-                  name, plane ? "triangles" : "tetrahedra", plane ? "edge" : "facet",
+                  name, simplices_of(header_.dimension),
+                  header_.dimension == 2 ? "edge" : "facet",
                   fmt::join(crowded_, ", ")),
       ErrorCode::kBadInput, {.file = name});
 }

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "formats/points/attributes/further_coordinates.h"
+#include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
 namespace spillway::stream {
@@ -22,45 +24,65 @@ GeneratorOptions generator_options(const GenerateOptions& options) {
 
 GeneratedPoints::GeneratedPoints(const GenerateOptions& options)
     : count_(options.count),
-      has_heights_(options.dimension == 3 || always_has_heights(family_by_name(options.family))),
+      has_heights_(options.dimension >= 3 || always_has_heights(family_by_name(options.family))),
+      attributes_(further_coordinates(options.dimension)),
       generator_(make_generator(generator_options(options))) {
   if (generator_->lattice() != nullptr) lattice_ = *generator_->lattice();
 }
 
 PointsHeader GeneratedPoints::header() const {
-  return {
-      .coordinates = has_heights_ ? 3 : 2, .count = count_, .lattice = public_lattice(lattice_)};
+  return {.coordinates = has_heights_ ? 3 : 2,
+          .count = count_,
+          .lattice = public_lattice(lattice_),
+          .attributes = attributes_.attributes()};
 }
 
-/// Returns the number of the first of them.
-std::uint64_t GeneratedPoints::make(std::vector<LatticePoint>& points) {
+/// Returns the number of the first of them. Their records are their coordinates beyond z.
+std::uint64_t GeneratedPoints::make(std::vector<LatticePoint>& points,
+                                    std::vector<std::byte>& records) {
   const std::uint64_t first = made_;
   numbers_.resize(std::min(kBlockPoints, count_ - first));
   numbers_.resize(generator_->next(numbers_));
   points.clear();
   points.reserve(numbers_.size());
   for (const Point<3>& point : numbers_) points.emplace_back(point);
+  const auto further = std::as_bytes(generator_->further());
+  records.assign(further.begin(), further.end());
   made_ += points.size();
   return first;
 }
 
 bool GeneratedPoints::read(std::vector<spillway::Point<3>>& points) {
+  spillway::PointsBlock block;
+  const bool any = read(block);
+  points = std::move(block.points);
+  return any;
+}
+
+bool GeneratedPoints::read(spillway::PointsBlock& block) {
   refuse_taken_points(is_taken_);
   std::vector<LatticePoint> made;
-  make(made);
-  points = public_points(lattice_, made);
-  return !points.empty();
+  std::vector<std::byte> records;
+  make(made, records);
+  block.points = public_points(lattice_, made);
+  block.attributes = columns_of(attributes_, records);
+  return !block.points.empty();
 }
 
 RunPoints GeneratedPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
   refuse_taken_points(std::exchange(is_taken_, true));
-  return {.stream = this, .has_heights = has_heights_, .records = count_, .name = "the points"};
+  return {.stream = this,
+          .has_heights = has_heights_,
+          .attributes = attributes_,
+          .offered = attributes_,
+          .records = count_,
+          .name = "the points"};
 }
 
 bool GeneratedPoints::fetch(SourcePiece& piece) {
   PointBlock& block = piece.raw.decoded;
   block.clear();
-  const std::uint64_t first = make(block.points);
+  const std::uint64_t first = make(block.points, block.attributes);
   block.index.resize(block.size());
   std::iota(block.index.begin(), block.index.end(), first);
   return block.size() > 0;

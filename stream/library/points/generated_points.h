@@ -22,6 +22,7 @@ class GeneratedPoints final : public PointSource, public EnginePoints, private P
 
   [[nodiscard]] PointsHeader header() const override;
   bool read(std::vector<spillway::Point<3>>& points) override;
+  bool read(spillway::PointsBlock& block) override;
 
   RunPoints begin(RunWatch& watch, bool index) override;
   [[nodiscard]] const char* phase() const override { return "generate"; }
@@ -38,11 +39,12 @@ class GeneratedPoints final : public PointSource, public EnginePoints, private P
   [[nodiscard]] std::uint64_t points_read() const override { return made_; }
   [[nodiscard]] std::optional<double> fraction_read() const override;
 
-  std::uint64_t make(std::vector<LatticePoint>& points);
+  std::uint64_t make(std::vector<LatticePoint>& points, std::vector<std::byte>& records);
 
   bool is_taken_ = false;  ///< by a run
   std::uint64_t count_;
   bool has_heights_;
+  AttributeLayout attributes_;  ///< coordinates beyond z
   std::unique_ptr<PointGenerator> generator_;
   std::vector<Point<3>> numbers_;  ///< of the points that were made last
   std::optional<IntegerLattice> lattice_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
 #include "stream/library/points/attribute_records.h"
@@ -19,6 +20,13 @@ constexpr std::uint64_t kBlockPoints = 65536;
 
 template <int D>
 void MemoryPoints<D>::check() const {
+  for (int axis = kOwnAxes; axis < D; ++axis) {
+    for (const Attribute& attribute : offered_.attributes()) {
+      if (attribute.name != coordinate_name(axis)) continue;
+      throw InvalidArgument(fmt::format("an attribute is called {}, as a coordinate of the points is",
+                                        attribute.name));
+    }
+  }
   if (offered_.empty() || offered_.size() == points_.size()) return;
   throw InvalidArgument(
       fmt::format("there are {} points, but attributes of {}", points_.size(), offered_.size()));
@@ -26,10 +34,32 @@ void MemoryPoints<D>::check() const {
 
 template <int D>
 spillway::Point<3> MemoryPoints<D>::point(std::uint64_t number) const {
-  const spillway::Point<D> from = points_[number];
-  spillway::Point<3> point{};
-  std::copy(from.begin(), from.end(), point.begin());
-  return point;
+  return own_coordinates<D>(points_[number]);
+}
+
+template <int D>
+AttributeLayout MemoryPoints<D>::all_attributes() const {
+  std::vector<Attribute> all = further_coordinates(D).attributes();
+  const std::vector<Attribute> given = offered_.attributes();
+  all.insert(all.end(), given.begin(), given.end());
+  return AttributeLayout(std::move(all));
+}
+
+template <int D>
+std::vector<std::byte> MemoryPoints<D>::records(const AttributeLayout& layout, std::uint64_t first,
+                                                std::uint64_t count) const {
+  const AttributeLayout given = without_further_coordinates(layout, D);
+  std::vector<std::byte> others = records_of(offered_, given, first, count);
+  if constexpr (D <= kOwnAxes) return others;
+  std::vector<std::byte> all;
+  all.reserve(count * layout.record_size());
+  for (std::uint64_t i = 0; i < count; ++i) {
+    append_further_coordinates<D>(points_[first + i], all);
+    const std::span<const std::byte> rest =
+        std::span(others).subspan(i * given.record_size(), given.record_size());
+    all.insert(all.end(), rest.begin(), rest.end());
+  }
+  return all;
 }
 
 template <int D>
@@ -46,18 +76,19 @@ template <int D>
 bool MemoryPoints<D>::read(spillway::PointsBlock& block) {
   const std::uint64_t first = next_;
   if (!read(block.points)) return false;
-  const AttributeLayout layout(offered_.attributes());
-  block.attributes = columns_of(layout, records_of(offered_, layout, first, block.points.size()));
+  const AttributeLayout layout = all_attributes();
+  block.attributes = columns_of(layout, records(layout, first, block.points.size()));
   return true;
 }
 
 template <int D>
 RunPoints MemoryPoints<D>::begin(RunWatch& /*watch*/, bool /*index*/) {
   refuse_taken_points(std::exchange(is_taken_, true));
-  const AttributeLayout offered(offered_.attributes());
-  attributes_ = chosen(offered, choice());
+  const AttributeLayout offered = all_attributes();
+  attributes_ = with_further_coordinates(offered, choice(), D);
   return {.stream = this,
-          .has_heights = D == 3,
+          .dimension = D > kOwnAxes ? D : 0,
+          .has_heights = D >= kOwnAxes,
           .attributes = attributes_,
           .offered = offered,
           .name = "the points"};
@@ -79,11 +110,10 @@ void MemoryPoints<D>::decode(SourcePiece& piece, PointBlock& block) {
   block.index.resize(piece.raw.count);
   for (std::uint64_t i = 0; i < piece.raw.count; ++i) {
     const std::uint64_t number = piece.raw.first + i;
-    const spillway::Point<3> taken = point(number);
-    block.points.emplace_back(finite_point(taken, number));
+    block.points.emplace_back(own_coordinates<D>(finite_point<D>(points_[number], number)));
     block.index[i] = number;
   }
-  block.attributes = records_of(offered_, attributes_, piece.raw.first, piece.raw.count);
+  block.attributes = records(attributes_, piece.raw.first, piece.raw.count);
 }
 
 template <int D>
@@ -93,7 +123,7 @@ std::optional<double> MemoryPoints<D>::fraction_read() const {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class MemoryPoints<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream
@@ -114,22 +144,15 @@ void PointSink::write(std::span<const Point<3>> points, const AttributeColumns& 
 }
 void PointSink::finish() {}
 
-std::unique_ptr<PointSource> points_in_memory(PointView<3> points, AttributeColumns attributes) {
-  return std::make_unique<stream::MemoryPoints<3>>(points, std::move(attributes));
-}
-
-std::unique_ptr<PointSource> points_in_memory(PointView<2> points, AttributeColumns attributes) {
-  return std::make_unique<stream::MemoryPoints<2>>(points, std::move(attributes));
-}
-
-std::unique_ptr<PointSource> points_in_memory(std::vector<Point<3>>&& points,
-                                              AttributeColumns attributes) {
-  return std::make_unique<stream::MemoryPoints<3>>(std::move(points), std::move(attributes));
-}
-
-std::unique_ptr<PointSource> points_in_memory(std::vector<Point<2>>&& points,
-                                              AttributeColumns attributes) {
-  return std::make_unique<stream::MemoryPoints<2>>(std::move(points), std::move(attributes));
-}
+#define SPILLWAY_DEFINE(D)                                                                          \
+  std::unique_ptr<PointSource> points_in_memory(PointView<D> points, AttributeColumns attributes) { \
+    return std::make_unique<stream::MemoryPoints<D>>(points, std::move(attributes));                \
+  }                                                                                                 \
+  std::unique_ptr<PointSource> points_in_memory(std::vector<Point<D>>&& points,                     \
+                                                AttributeColumns attributes) {                      \
+    return std::make_unique<stream::MemoryPoints<D>>(std::move(points), std::move(attributes));     \
+  }
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_DEFINE)
+#undef SPILLWAY_DEFINE
 
 }  // namespace spillway

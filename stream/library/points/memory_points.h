@@ -2,18 +2,21 @@
 
 #include <spillway/points.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "stream/library/points/engine_points.h"
 #include "stream/source/point_stream.h"
 
 namespace spillway::stream {
 
-/// Points of an array in memory; a run's threads take them from there.
+/// Points of an array in memory; a run's threads take them from there. Coordinates beyond z come as
+/// attributes.
 template <int D>
 class MemoryPoints final : public PointSource, public EnginePoints, private PointStream {
  public:
@@ -28,7 +31,9 @@ class MemoryPoints final : public PointSource, public EnginePoints, private Poin
   }
 
   [[nodiscard]] PointsHeader header() const override {
-    return {.coordinates = D, .count = points_.size(), .attributes = offered_.attributes()};
+    return {.coordinates = std::min(D, kOwnAxes),
+            .count = points_.size(),
+            .attributes = all_attributes().attributes()};
   }
   bool read(std::vector<spillway::Point<3>>& points) override;
   bool read(spillway::PointsBlock& block) override;
@@ -47,7 +52,11 @@ class MemoryPoints final : public PointSource, public EnginePoints, private Poin
   [[nodiscard]] std::optional<double> fraction_read() const override;
 
   void check() const;
+  /// What points have besides x, y and z: their coordinates beyond these, and what was given.
+  [[nodiscard]] AttributeLayout all_attributes() const;
   [[nodiscard]] spillway::Point<3> point(std::uint64_t number) const;
+  [[nodiscard]] std::vector<std::byte> records(const AttributeLayout& layout, std::uint64_t first,
+                                               std::uint64_t count) const;
 
   std::vector<spillway::Point<D>> kept_;  ///< or none
   PointView<D> points_;

@@ -13,6 +13,7 @@
 
 #include "formats/points/point_formats.h"
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
@@ -144,8 +145,12 @@ OpenedPoints::OpenedPoints(const std::vector<std::string>& paths, const PointOpt
       name_(paths.empty() ? "" : paths.front()),
       scratch_(context.state().scratch(context)),
       context_(context) {
-  if (options.dimension != 0 && options.dimension != 2 && options.dimension != 3) {
-    throw InvalidArgument(fmt::format("there are 2 or 3 dimensions, not {}", options.dimension));
+  if (options.dimension != 0 && !is_dimension(options.dimension)) {
+    throw InvalidArgument(fmt::format("there are 2 to 6 dimensions, not {}", options.dimension));
+  }
+  if (options.dimension > 3 && options.thin) {
+    throw InvalidArgument(
+        fmt::format("points are thinned by cells of 2 or 3 dimensions, not {}", options.dimension));
   }
   if (!(options.resolution >= 0) || std::isinf(options.resolution)) {
     throw InvalidArgument(fmt::format("points are not {} apart: give 0 for all of them, or more",

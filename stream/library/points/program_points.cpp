@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/lattice_check.h"
 #include "stream/library/given_crs.h"
@@ -15,12 +16,13 @@ ProgramPoints::ProgramPoints(PointSource& source, int dimension)
     : source_(source),
       header_(source.header()),
       told_(checked_attributes(header_.attributes)),
+      dimension_(dimension),
       lattice_(checked_lattice(header_.lattice)),
       world_extent_(checked_box(header_)),
       extent_(world_extent_) {
   if (!lattice_) return;
   heights_on_lattice_ = header_.lattice->has_z;
-  if (!lattice_->isotropic(std::max(1, dimension)) || (dimension == 3 && !heights_on_lattice_)) {
+  if (dimension > kOwnAxes || !lattice_->isotropic(std::max(1, dimension)) || (dimension == 3 && !heights_on_lattice_)) {
     lattice_.reset();
   } else if (extent_) {
     extent_ = nearest_integers(*lattice_, *world_extent_);
@@ -36,7 +38,8 @@ void ProgramPoints::settle_crs(CrsNeed need) {
 }
 
 RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
-  attributes_ = chosen(told_, choice());
+  for (int axis = kOwnAxes; axis < dimension_; ++axis) check_coordinate(axis);
+  attributes_ = with_further_coordinates(told_, choice(), dimension_);
   return {.stream = this,
           .has_heights = header_.coordinates == 3,
           .heights_on_lattice = heights_on_lattice_,
@@ -45,6 +48,20 @@ RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
           .extent = world_extent_,
           .crs = header_.crs,
           .name = "the points"};
+}
+
+/// Columns of a program are taken as they are.
+void ProgramPoints::check_coordinate(int axis) const {
+  const AttributeField* const field = find_coordinate(told_, axis);
+  const Attribute is{.name = field != nullptr ? field->attribute.name : coordinate_name(axis)};
+  if (field != nullptr && field->attribute.type == is.type && field->attribute.scale == 1 &&
+      field->attribute.offset == 0) {
+    return;
+  }
+  throw InvalidArgument(
+      fmt::format("coordinate {} of points of {} dimensions is an attribute of one float64, without "
+                  "a scale, called {}, but the header tells of none",
+                  axis + 1, dimension_, is.name));
 }
 
 bool ProgramPoints::fetch(SourcePiece& piece) {
@@ -64,7 +81,7 @@ bool ProgramPoints::fetch(SourcePiece& piece) {
 }
 
 LatticePoint ProgramPoints::placed(const spillway::Point<3>& point, std::uint64_t number) const {
-  LatticePoint placed(finite_point(point, number));
+  LatticePoint placed(finite_point<3>(point, number));
   if (!lattice_) return placed;
   const int axes = heights_on_lattice_ && header_.coordinates == 3 ? 3 : 2;
   for (int axis = 0; axis < axes; ++axis) {
@@ -80,6 +97,15 @@ void ProgramPoints::decode(SourcePiece& piece, PointBlock& block) {
     const std::uint64_t number = piece.raw.first + i;
     block.points[i] = placed(block.points[i].numbers(), number);
     block.index[i] = number;
+  }
+  if (further_axes(dimension_) == 0) return;
+  const CoordinateCheck check(told_, dimension_);
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    const std::byte* const record = &block.attributes[i * block.record_size()];
+    const int axis = check.bad_axis(record);
+    if (axis == 0) continue;
+    throw InvalidArgument(
+        fmt::format("point {} has {}", block.index[i], check.text(axis, record)));
   }
 }
 

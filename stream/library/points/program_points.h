@@ -33,6 +33,7 @@ class ProgramPoints final : public PointStream, public EnginePoints {
   RunPoints begin(RunWatch& watch, bool index) override;
 
  private:
+  void check_coordinate(int axis) const;
   [[nodiscard]] LatticePoint placed(const spillway::Point<3>& point, std::uint64_t number) const;
 
   PointSource& source_;
@@ -40,6 +41,7 @@ class ProgramPoints final : public PointStream, public EnginePoints {
   AttributeLayout told_;         ///< that each block of the program has
   AttributeLayout attributes_;   ///< those of them that are wanted
   spillway::PointsBlock block_;  ///< that was read last
+  int dimension_;  ///< in which they are triangulated; 0: they are not
   std::optional<IntegerLattice> lattice_;
   bool heights_on_lattice_ = false;
   std::optional<Box<3>> world_extent_;

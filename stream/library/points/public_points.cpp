@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/error.h"
+#include "src/geometry/dimensions.h"
 
 namespace spillway::stream {
 
@@ -23,8 +25,9 @@ std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> point
   return taken;
 }
 
-const Point<3>& finite_point(const Point<3>& point, std::uint64_t number) {
-  if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])) return point;
+template <int D>
+const Point<D>& finite_point(const Point<D>& point, std::uint64_t number) {
+  if (std::ranges::all_of(point, [](double number) { return std::isfinite(number); })) return point;
   throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})", number,
                                     fmt::join(point, ", ")));
 }
@@ -76,6 +79,11 @@ std::optional<Box<3>> told_box(const std::optional<Extent>& extent, const char* 
   }
   return Box<3>{extent->low, extent->high};
 }
+
+#define SPILLWAY_INSTANTIATE(D) \
+  template const Point<D>& finite_point<D>(const Point<D>&, std::uint64_t);
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
 
 std::optional<Box<3>> checked_box(const PointsHeader& header) {
   if (header.coordinates != 2 && header.coordinates != 3) {

@@ -29,7 +29,8 @@ std::optional<IntegerLattice> checked_lattice(const std::optional<Lattice>& latt
 
 /// A program's point of that number. Throws Failure(kInvalidArgument) unless its coordinates are
 /// finite.
-const Point<3>& finite_point(const Point<3>& point, std::uint64_t number);
+template <int D>
+const Point<D>& finite_point(const Point<D>& point, std::uint64_t number);
 
 /// The integer of a coordinate on an axis of a lattice. Throws Failure(kInvalidArgument) if there is
 /// none, where `what` of that number ("point" 7) has the coordinate.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "formats/disk/scratch_folder.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "stream/checker/checker.h"
 #include "stream/library/context/context_state.h"
@@ -38,11 +39,17 @@ class Comparison {
                       "has {}",
                       run.dimension, dimension));
     }
+    if (!has_further_coordinates(run.attributes, dimension)) {
+      throw InvalidArgument(
+          fmt::format("the points have x, y and z, and the mesh {} dimensions", dimension));
+    }
     input_ = run.stream;
     how.input_lattice = input_->lattice();
     scratch_ = context.state().scratch(context);
     vertices_.emplace(dimension, context.memory(), *scratch_);
-    how.vertex = [this](const WorldPoint& vertex) { vertices_->add_vertex(vertex); };
+    how.vertex = [this](const WorldPoint& vertex, std::span<const std::byte> further) {
+      vertices_->add_vertex(vertex, further);
+    };
   }
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
@@ -66,7 +73,14 @@ CheckReport check_whole(const Mesh& mesh, CheckerOptions& how, PointSource* poin
   Comparison comparison(points, mesh.header.dimension, context, watch, how);
   watch.begin("check", "simplices");
   CheckReport report = check_mesh(mesh, how);
-  if (how.vertex) std::ranges::for_each(mesh.vertices, how.vertex);
+  if (how.vertex) {
+    const std::size_t record = mesh.header.attributes.record_size();
+    const std::size_t further =
+        static_cast<std::size_t>(further_axes(mesh.header.dimension)) * sizeof(double);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      how.vertex(mesh.vertices[v], std::span(mesh.attributes).subspan(v * record, further));
+    }
+  }
   watch.end(report.simplices);
   comparison.run(how, report);
   return report;

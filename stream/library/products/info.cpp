@@ -1,10 +1,16 @@
 #include <spillway/info.h>
 #include <spillway/input.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "formats/bytes/bytes.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
@@ -57,6 +63,28 @@ class OutsidePoints {
   std::uint64_t count_ = 0;
 };
 
+/// The ranges of coordinates beyond z.
+class FurtherExtent {
+ public:
+  explicit FurtherExtent(int dimension)
+      : ranges_(static_cast<std::size_t>(further_axes(dimension)),
+                {std::numeric_limits<double>::infinity(),
+                 -std::numeric_limits<double>::infinity()}) {}
+
+  /// Takes a record that begins with them.
+  void add(std::span<const std::byte> record) {
+    for (std::size_t k = 0; k < ranges_.size(); ++k) {
+      const auto coordinate = load<double>(record.data() + k * sizeof(double));
+      ranges_[k] = {std::min(ranges_[k][0], coordinate), std::max(ranges_[k][1], coordinate)};
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::array<double, 2>>& ranges() const { return ranges_; }
+
+ private:
+  std::vector<std::array<double, 2>> ranges_;
+};
+
 MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   watch.begin("read", "vertices");
   const Mesh mesh = file.read_whole();
@@ -70,6 +98,11 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   info.totals.hull_facets = count_boundary_facets(mesh);
   info.totals.canonical_hash = canonical_hash(mesh);
   info.extent = extent_of(box_around(mesh.vertices));
+  FurtherExtent further(mesh.header.dimension);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    further.add(std::span(mesh.attributes).subspan(v * mesh.header.attributes.record_size()));
+  }
+  info.further_extent = further.ranges();
   info.lattice = lattice_info(mesh.header.lattice);
   info.crs = mesh.header.crs;
   info.attributes = mesh.header.attributes.attributes();
@@ -80,8 +113,12 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
 MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   MeshStreamReader& reader = file.stream();
   Box<3> box;
+  FurtherExtent further_box(reader.header().dimension);
   CheckerOptions options;
-  options.vertex = [&box](const WorldPoint& vertex) { box.expand(vertex); };
+  options.vertex = [&](const WorldPoint& vertex, std::span<const std::byte> further) {
+    box.expand(vertex);
+    further_box.add(further);
+  };
   options.progress = [&watch](std::uint64_t simplices, std::optional<double> fraction) {
     watch.tell(simplices, fraction);
   };
@@ -99,6 +136,7 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   info.totals.hull_facets = found.hull_facets;
   info.totals.canonical_hash = found.canonical_hash;
   info.extent = extent_of(box);
+  info.further_extent = further_box.ranges();
   info.lattice = lattice_info(reader.header().lattice);
   info.crs = reader.header().crs;
   info.attributes = reader.header().attributes.attributes();

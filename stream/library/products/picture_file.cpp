@@ -10,6 +10,7 @@
 #include "formats/rasters/raster_formats.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/plan/memory_plan.h"
 
@@ -84,6 +85,7 @@ unsigned PictureFile::feeding_threads(unsigned threads) const {
 
 BlockSink& PictureFile::open(const MeshStart& start) {
   dimension_ = start.header.dimension;
+  refuse_higher_dimensions(dimension_, "a picture shows");
   mesh_ = {.lattice = start.header.lattice,
            .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge};
   return *begin_again();

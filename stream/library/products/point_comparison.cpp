@@ -6,8 +6,10 @@
 #include <limits>
 #include <numeric>
 
+#include "src/geometry/dimensions.h"
 #include "src/parallel/parallel.h"
 #include "stream/checker/fault_text.h"
+#include "stream/tiles/cuts/tile_cut.h"
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::stream {
@@ -129,8 +131,9 @@ bool read(PointStream& input, PointBlock& block) {
 PointComparison::PointComparison(int dimension, std::uint64_t memory, ScratchFolder& scratch)
     : dimension_(dimension), memory_(memory), scratch_(scratch) {}
 
-void PointComparison::add_vertex(const WorldPoint& vertex) {
+void PointComparison::add_vertex(const WorldPoint& vertex, std::span<const std::byte> further) {
   pending_.points.emplace_back(vertex.numbers());
+  pending_.attributes.insert(pending_.attributes.end(), further.begin(), further.end());
   pending_.index.push_back(vertices_++ | kVertexBit);
   if (pending_.size() == PointBuffer::kChunk) put_away();
 }
@@ -162,11 +165,12 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
     RunWatch& watch_;
   } dealing(watch);
   TileTree tree(
-      {.dimension = dimension_,
+      {.dimension = cut_axes(dimension_),
        .capacity = std::max<std::size_t>(1000, memory_ / 2 / kTileBytes),
        .buffered_points = memory_ / 3 / kBufferedBytes,
        .expected = input.expected() ? std::optional(*input.expected() + vertices_) : std::nullopt,
-       .index = true},
+       .index = true,
+       .record_size = static_cast<std::size_t>(further_axes(dimension_)) * sizeof(double)},
       scratch_, times, dealing);
   Faults faults(report, options.most_faults);
   const std::uint64_t before = faults.count();
@@ -203,8 +207,8 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
       watch.end(tree.divide_large());
     }
     watch.begin("compare", "points");
-    distinct = dimension_ == 2 ? TreeComparison<2>(tree, faults, watch).run()
-                               : TreeComparison<3>(tree, faults, watch).run();
+    distinct = with_dimension(
+        dimension_, [&](auto d) { return TreeComparison<d>(tree, faults, watch).run(); });
     watch.end(tree.points());
   });
   if (faults.count() > before) return;

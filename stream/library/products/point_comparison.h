@@ -21,11 +21,12 @@ class PointComparison {
   /// Keeps about to `memory` bytes. `scratch` must outlive it.
   PointComparison(int dimension, std::uint64_t memory, ScratchFolder& scratch);
 
-  /// Takes the next vertex of the mesh, in output coordinates.
-  void add_vertex(const WorldPoint& vertex);
+  /// Takes the next vertex of the mesh, in output coordinates: x, y and z, and those beyond.
+  void add_vertex(const WorldPoint& vertex, std::span<const std::byte> further);
 
   /// Adds to `report` whether the vertices so far are exactly the distinct points of `input`, both
-  /// by their first `dimension` output coordinates, and, in the plane, whether each vertex's height
+  /// by their first `dimension` output coordinates, of which the input has those beyond z as
+  /// attributes, and no other ones, and, in the plane, whether each vertex's height
   /// lies between those of its points. Reads the input to its end. Its phases are "read points",
   /// of the input; "divide", if need be; and "compare", of vertices and of points that are kept.
   void compare(PointStream& input, const CheckerOptions& options, CheckReport& report,

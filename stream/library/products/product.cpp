@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/error.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/sinks/simplex_sink.h"
 
@@ -55,7 +56,9 @@ class SharePool {
 class ProductWriter final : public SimplexSink<Point<3>> {
  public:
   ProductWriter(const MeshStreamHeader& header, const ProductShare& kind)
-      : SimplexSink(header.dimension), header_(header), shares_(kind) {}
+      : SimplexSink(header.dimension), header_(header), shares_(kind) {
+    refuse_higher_dimensions(header.dimension, "a product is made of");
+  }
 
   [[nodiscard]] SharePool& shares() { return shares_; }
 

@@ -181,7 +181,7 @@ Border<D> unpack_border(Unpacker& message, bool with_index) {
   template TileNode<D> unpack_tile_node(Unpacker&);    \
   template void pack(Packer&, const Border<D>&, bool); \
   template Border<D> unpack_border(Unpacker&, bool);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -127,7 +127,7 @@ DividedSample divide_among_ranks(PieceTable& pieces, const distributed::Ranks& r
 
 #define SPILLWAY_INSTANTIATE(D) \
   template DividedSample divide_among_ranks<D>(PieceTable&, const distributed::Ranks&);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -107,7 +107,7 @@ void OwnedVertices<D>::append_record(VertexId v, std::vector<std::byte>& attribu
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class OwnedVertices<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

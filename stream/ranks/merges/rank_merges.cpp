@@ -312,7 +312,7 @@ void RankMerges<D>::keep(std::optional<SectionDraft> draft) {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template class RankMerges<D>;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::ranks

@@ -178,19 +178,19 @@ std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std
 
 std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts,
                                        int dimension) {
-  return with_streamed_dimension(dimension,
+  return with_cut_dimension(dimension,
                                  [&](auto d) { return divide_sample<d>(sample, parts); });
 }
 
 std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
                                               std::size_t parts, int dimension) {
-  return with_streamed_dimension(dimension,
+  return with_cut_dimension(dimension,
                                  [&](auto d) { return divide_longest_axes<d>(sample, parts); });
 }
 
 #define SPILLWAY_INSTANTIATE(D) \
   template std::vector<DivisionCut> divide_sample<D>(std::span<const LatticePoint>, std::size_t);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -83,7 +83,7 @@ SampleMesh<D> triangulate_sample(std::span<const LatticePoint> sample, std::size
   template Point<D> mesh_point<D>(const LatticePoint&); \
   template struct SampleMesh<D>;                        \
   template SampleMesh<D> triangulate_sample(std::span<const LatticePoint>, std::size_t);
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/delaunay/division/cut.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
@@ -50,6 +51,10 @@ std::optional<LatticePoint> heavy_place(const CrowdedTile& tile);
 
 /// A cut of `box` between that place and others; nothing if there are no others.
 std::optional<Cut> cut_beside(const Box<3>& box, const LatticePoint& place, int dimension);
+
+/// Tiles are cut along x, y and, in space, z: the first axes of points of a dimension. What lies
+/// beyond z is in the attributes of points.
+constexpr int cut_axes(int dimension) { return dimension - further_axes(dimension); }
 
 /// A box is compact if its longest side is at most so many times as long as the shortest one.
 constexpr double kMostAspect = 4;

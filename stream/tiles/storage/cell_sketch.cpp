@@ -258,7 +258,7 @@ PointSketch<D> CellSketch::sketch() const {
 }
 
 #define SPILLWAY_INSTANTIATE(D) template PointSketch<D> CellSketch::sketch<D>() const;
-SPILLWAY_FOR_EACH_STREAMED_DIMENSION(SPILLWAY_INSTANTIATE)
+SPILLWAY_FOR_EACH_CUT_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
 
 }  // namespace spillway::stream

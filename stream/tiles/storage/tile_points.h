@@ -27,19 +27,14 @@ struct TilePoints {
     if (with_index) resize(index, count);
     if (record_size > 0) resize(attributes, count * record_size);
   }
-  /// Puts what points have besides coordinates into the places from `first` on.
-  void set_carried(std::size_t first, const PointsView& some) {
+  /// Puts points, with all that they carry, into the places from `first` on.
+  void set(std::size_t first, const PointsView& some) {
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      points[first + i] = some.coordinates<D>(i);
+      if constexpr (D == 2) heights[first + i] = some.points[i][2];
+    }
     std::ranges::copy(some.index, index.data() + (some.index.empty() ? 0 : first));
     std::ranges::copy(some.attributes, attributes.data() + first * some.record_size());
-  }
-  /// Puts a point into a place.
-  void set(std::size_t place, const LatticePoint& point) {
-    if constexpr (D == 2) {
-      points[place] = {point[0], point[1]};
-      heights[place] = point[2];
-    } else {
-      points[place] = point;
-    }
   }
 
  private:

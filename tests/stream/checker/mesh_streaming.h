@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -37,6 +38,13 @@ class StreamInMemory : public MeshStreamReader {
   std::size_t next_ = 0;
 };
 
+inline void append_vertex(const Mesh& mesh, std::uint64_t v, MeshStreamBlock& block) {
+  const std::size_t size = mesh.header.attributes.record_size();
+  const auto record = std::span(mesh.attributes).subspan(v * size, size);
+  block.vertices.emplace_back(mesh.vertices[v].numbers());
+  block.attributes.insert(block.attributes.end(), record.begin(), record.end());
+}
+
 /// The mesh, its simplices in their order, so many in a block. Vertices come right before their
 /// first simplex and are finalized right after their last; unused ones are in the last block. The
 /// mesh's vertices are as blocks shall hold them, on its lattice if it has one. Totals other than
@@ -45,6 +53,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
   StreamInMemory stream;
   stream.stream_header.dimension = mesh.header.dimension;
   stream.stream_header.lattice = mesh.header.lattice;
+  stream.stream_header.attributes = mesh.header.attributes;
   stream.stream_totals.vertices = mesh.vertices.size();
   const std::size_t corners = mesh.corners_per_simplex();
   stream.stream_totals.simplices = mesh.corners.size() / corners;
@@ -67,7 +76,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
     for (const std::uint64_t v : old) block.imported.push_back(number[v]);
     for (const std::uint64_t v : fresh) {
       number[v] = announced++;
-      block.vertices.emplace_back(mesh.vertices[v].numbers());
+      append_vertex(mesh, v, block);
     }
     std::vector<std::uint64_t> all = fresh;
     all.insert(all.end(), old.begin(), old.end());
@@ -93,7 +102,7 @@ inline StreamInMemory stream_of(const Mesh& mesh, std::size_t simplices_in_block
   std::for_each(last.finalized.begin(), last.finalized.end(), shift);
   for (const std::uint64_t v : unused) {
     last.finalized.push_back(static_cast<std::uint32_t>(last.vertices.size()));
-    last.vertices.emplace_back(mesh.vertices[v].numbers());
+    append_vertex(mesh, v, last);
   }
   return stream;
 }
