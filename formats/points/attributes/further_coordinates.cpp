@@ -45,7 +45,8 @@ AttributeLayout with_further_coordinates(const AttributeLayout& layout,
                        .description = source.description});
   }
   const std::size_t coordinates = carried.size();
-  for (const AttributeField& field : chosen(layout, choice).fields()) {
+  const AttributeLayout others = chosen(layout, choice);
+  for (const AttributeField& field : others.fields()) {
     const auto is_it = [&](const Attribute& coordinate) {
       return coordinate.name == field.attribute.name;
     };

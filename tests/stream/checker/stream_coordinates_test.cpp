@@ -22,7 +22,7 @@ TEST(StreamCoordinates, WithoutALatticeAreOutputCoordinatesEverywhere) {
   EXPECT_FALSE(of.lattice());
   EXPECT_FALSE(of.on_lattice());
   EXPECT_EQ(of.axis_off_lattice({0.1, 0.2, 0.3}), -1);
-  EXPECT_EQ(of.for_predicates({0.1, 0.2, 0.3}), (Point<2>{0.1, 0.2}));
+  EXPECT_EQ(of.for_predicates({0.1, 0.2}), (Point<2>{0.1, 0.2}));
   EXPECT_EQ(of.to_output(Point<2>{0.1, 0.2}), (Point<2>{0.1, 0.2}));
   EXPECT_EQ(of.block_to_output({0.1, 0.2, 0.3}), (WorldPoint{0.1, 0.2, 0.3}));
 }
@@ -30,7 +30,7 @@ TEST(StreamCoordinates, WithoutALatticeAreOutputCoordinatesEverywhere) {
 TEST(StreamCoordinates, OfAStreamOnALatticeAreItsIntegers) {
   const StreamCoordinates<2> of(header_with(kEven), std::nullopt);
   EXPECT_TRUE(of.on_lattice());
-  EXPECT_EQ(of.for_predicates({3, 4, 5}), (Point<2>{3, 4}));
+  EXPECT_EQ(of.for_predicates({3, 4}), (Point<2>{3, 4}));
   EXPECT_EQ(of.to_output(Point<2>{3, 4}), (Point<2>{101.5, 202}));
   EXPECT_EQ(of.block_to_output({3, 4, 5}), (WorldPoint{101.5, 202, 0.05}));
   EXPECT_EQ(of.axis_off_lattice({3, 4, 5.5}), -1) << "z does not count in the plane";
@@ -41,18 +41,18 @@ TEST(StreamCoordinates, OnALatticeOfUnevenScalesPredicatesRunOnOutputCoordinates
   const StreamCoordinates<2> of(header_with(kUneven), std::nullopt);
   EXPECT_TRUE(of.lattice());
   EXPECT_FALSE(of.on_lattice());
-  EXPECT_EQ(of.for_predicates({3, 4, 5}), (Point<2>{101.5, 201}));
+  EXPECT_EQ(of.for_predicates({3, 4}), (Point<2>{101.5, 201}));
   EXPECT_EQ(of.to_output(Point<2>{101.5, 201}), (Point<2>{101.5, 201}));
 }
 
 TEST(StreamCoordinates, TheInputsLatticeServesAStreamWithoutOne) {
   const StreamCoordinates<2> of(header_with(std::nullopt), kEven);
   EXPECT_TRUE(of.on_lattice());
-  EXPECT_EQ(of.for_predicates({101.5, 202, 7}), (Point<2>{3, 4}));
+  EXPECT_EQ(of.for_predicates({101.5, 202}), (Point<2>{3, 4}));
   EXPECT_EQ(of.block_to_output({101.5, 202, 7}), (WorldPoint{101.5, 202, 7}));
   EXPECT_EQ(of.axis_off_lattice({101.5, 202, 0}), -1);
   EXPECT_EQ(of.axis_off_lattice({101.6, 202, 0}), 0);
-  EXPECT_EQ(of.for_predicates({101.6, 202, 0}), (Point<2>{3, 4})) << "rounded";
+  EXPECT_EQ(of.for_predicates({101.6, 202}), (Point<2>{3, 4})) << "rounded";
 }
 
 TEST(StreamCoordinates, TheStreamsOwnLatticeGoesFirst) {

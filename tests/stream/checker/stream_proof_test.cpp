@@ -314,7 +314,10 @@ TYPED_TEST(StreamProofTest, GivesOutVerticesInOutputCoordinatesAndProgress) {
   std::vector<WorldPoint> vertices;
   double last_fraction = 0;
   CheckerOptions options;
-  options.vertex = [&](const WorldPoint& vertex) { vertices.push_back(vertex); };
+  options.vertex = [&](const WorldPoint& vertex, std::span<const std::byte> further) {
+    EXPECT_TRUE(further.empty());
+    vertices.push_back(vertex);
+  };
   options.progress = [&](std::uint64_t, std::optional<double> fraction) {
     last_fraction = *fraction;
   };

@@ -322,7 +322,8 @@ TEST(Spm, BadHeader) {
     return error_of_stream("a.spm", stream_of({{kSpmHeader, header}}));
   };
   EXPECT_THAT(error(header_content(3, 2, 0)), HasSubstr("version 3 of spm is not known"));
-  EXPECT_THAT(error(header_content(1, 4, 0)), HasSubstr("neither 2 nor 3"));
+  EXPECT_THAT(error(header_content(1, 7, 0)), HasSubstr("none of 2 to 6"));
+  EXPECT_THAT(error(header_content(1, 4, 0)), HasSubstr("coordinates beyond z are missing"));
   EXPECT_THAT(error(header_content(1, 2, 16)), HasSubstr("unknown flags"));
   EXPECT_THAT(error(header_content(1, 2, kSpmHasLattice)), HasSubstr("ends early"));
   EXPECT_THAT(error(header_content(1, 2, kSpmHasLattice) + std::string(48, '\0')),
