@@ -17,10 +17,10 @@ void check_holds(const MeshFormat& format, const std::string& path, const MeshCo
     const bool in_space = contents.dimension == 3;
     const auto hold = in_space ? +[](const MeshFormat& other) { return other.most_dimension >= 3; }
                                : +[](const MeshFormat& other) { return other.most_dimension > 3; };
-    throw InvalidArgument(fmt::format("cannot write {}: {} holds no {}; choose {}", path,
-                                      format.title, simplices_text(contents.dimension),
-                                      list_of_formats(hold, "or")),
-                          {.file = path});
+    throw InvalidArgument(
+        fmt::format("cannot write {}: {} holds no {}; choose {}", path, format.title,
+                    simplices_text(contents.dimension), list_of_formats(hold, "or")),
+        {.file = path});
   }
   if (contents.has_input_index && !format.holds_input_index) {
     const auto hold = [](const MeshFormat& other) { return other.holds_input_index; };

@@ -27,8 +27,8 @@ struct OwnParts;
 
 /// What is known of a mesh before its first block. What is said must be right.
 struct MeshHeader {
-  int dimension = 2;                      ///< 2: triangles with z carried along, 3: tetrahedra; to 6
-  bool has_input_index = false;           ///< vertices carry their index in the input
+  int dimension = 2;             ///< 2: triangles with z carried along, 3: tetrahedra; to 6
+  bool has_input_index = false;  ///< vertices carry their index in the input
   std::optional<std::uint64_t> points{};  ///< of the input
   std::optional<Extent> extent{};         ///< a box around the points
   std::string crs{};                      ///< coordinate system as WKT or "EPSG:n"; empty: unknown

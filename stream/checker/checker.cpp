@@ -43,7 +43,7 @@ CheckReport read_stream(MeshStreamReader& reader, const CheckerOptions& options,
   require_dimension(reader.header().dimension);
   CheckReport report;
   with_dimension(reader.header().dimension,
-                          [&](auto d) { prove_stream<d>(reader, options, task, report); });
+                 [&](auto d) { prove_stream<d>(reader, options, task, report); });
   return report;
 }
 
@@ -54,8 +54,7 @@ CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options) {
   CheckReport report;
   report.vertices = mesh.vertices.size();
   report.simplices = mesh.corners.size() / mesh.corners_per_simplex();
-  with_dimension(mesh.header.dimension,
-                          [&](auto d) { prove_mesh<d>(mesh, options, report); });
+  with_dimension(mesh.header.dimension, [&](auto d) { prove_mesh<d>(mesh, options, report); });
   return report;
 }
 

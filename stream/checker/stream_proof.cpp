@@ -109,13 +109,13 @@ class StreamProof {
     simplices_entered_ += block.simplices();
     block.points.clear();
     for (const LatticePoint& vertex : mesh.vertices) {
-      const Point<D> point =
-          coordinates_.for_predicates(mesh.vertex<D>(block.points.size()));
+      const Point<D> point = coordinates_.for_predicates(mesh.vertex<D>(block.points.size()));
       const int axis = coordinates_.axis_off_lattice(vertex);
       if (axis >= 0) report_off_lattice(block.first_vertex + block.points.size(), vertex, axis);
       block.points.push_back(point);
       if (options_.vertex) {
-        options_.vertex(coordinates_.block_to_output(vertex), std::as_bytes(further_part<D>(point)));
+        options_.vertex(coordinates_.block_to_output(vertex),
+                        std::as_bytes(further_part<D>(point)));
       }
     }
     vertices_.enter(mesh, block.points, block.slots);

@@ -26,7 +26,8 @@ void check(const TriangulateOptions& options) {
     throw InvalidArgument(fmt::format("there are 2 to 6 dimensions, not {}", options.dimension));
   }
   if (options.dimension > 3 && options.kernel == Kernel::kCgal) {
-    throw InvalidArgument("CGAL's kernel triangulates in 2 and 3 dimensions: choose Spillway's own");
+    throw InvalidArgument(
+        "CGAL's kernel triangulates in 2 and 3 dimensions: choose Spillway's own");
   }
   check_choice(options.heights, Heights::kMean, "choice of heights");
   check_choice(options.division, Division::kConstantAxis, "division");
@@ -44,10 +45,10 @@ void check(const TriangulateOptions& options) {
 
 void check(const RunPoints& points, int dimension) {
   if (points.dimension != 0 && points.dimension != dimension) {
-    throw InvalidArgument(fmt::format(
-        "{} {} dimensions, not {}",
-        points.files != nullptr ? "the files were opened for" : "the points have",
-        points.dimension, dimension));
+    throw InvalidArgument(
+        fmt::format("{} {} dimensions, not {}",
+                    points.files != nullptr ? "the files were opened for" : "the points have",
+                    points.dimension, dimension));
   }
   const std::optional<IntegerLattice>& lattice = points.stream->lattice();
   if (points.files != nullptr && lattice && !lattice->isotropic(dimension)) {
@@ -59,9 +60,8 @@ void check(const RunPoints& points, int dimension) {
     throw Failure("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
   }
   if (!has_further_coordinates(points.attributes, dimension)) {
-    throw InvalidArgument(
-        fmt::format("the points have x, y and z, but are to be triangulated in {} dimensions",
-                    dimension));
+    throw InvalidArgument(fmt::format(
+        "the points have x, y and z, but are to be triangulated in {} dimensions", dimension));
   }
 }
 
@@ -77,9 +77,9 @@ Report triangulate_here(Run& run) {
 Report triangulate_to(BlockSink& blocks, const RunSetup& setup, Run& run) {
   PointStream& points = *run.points.stream;
   Report report;
-  static_cast<RunStatistics&>(report) =
-      with_dimension(run.engine.asked.dimension,
-                              [&](auto d) { return triangulate_stream<d>(points, blocks, setup); });
+  static_cast<RunStatistics&>(report) = with_dimension(run.engine.asked.dimension, [&](auto d) {
+    return triangulate_stream<d>(points, blocks, setup);
+  });
   if (report.threads < run.engine.threads && run.context.options().detail) {
     run.context.options().detail(
         fmt::format("{} of {} threads used: more of them need a larger memory limit",

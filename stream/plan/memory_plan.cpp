@@ -101,11 +101,8 @@ const Costs& costs_of(int dimension) {
 }
 
 const char* dimensions_text(int dimension) {
-  constexpr std::array kTexts = {"",
-                                 " in three dimensions",
-                                 " in four dimensions",
-                                 " in five dimensions",
-                                 " in six dimensions"};
+  constexpr std::array kTexts = {"", " in three dimensions", " in four dimensions",
+                                 " in five dimensions", " in six dimensions"};
   return kTexts[static_cast<std::size_t>(dimension - 2)];
 }
 

@@ -267,10 +267,11 @@ TilePoints<D> TileLoader::decode(StoredTile stored) const {
   return result;
 }
 
-#define SPILLWAY_INSTANTIATE(D)                                                           \
-  template std::optional<TileNode<D>> TileLoader::nodes_below<D>(CutTree::NodeRef, const Box<D>&) const; \
-  template bool TileLoader::on_disk<D>(const TileNode<D>&) const;                         \
-  template StoredTile TileLoader::read<D>(const TileNode<D>&);                            \
+#define SPILLWAY_INSTANTIATE(D)                                                                   \
+  template std::optional<TileNode<D>> TileLoader::nodes_below<D>(CutTree::NodeRef, const Box<D>&) \
+      const;                                                                                      \
+  template bool TileLoader::on_disk<D>(const TileNode<D>&) const;                                 \
+  template StoredTile TileLoader::read<D>(const TileNode<D>&);                                    \
   template TilePoints<D> TileLoader::decode<D>(StoredTile) const;
 SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE

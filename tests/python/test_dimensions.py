@@ -1,6 +1,7 @@
 """Four to six dimensions, against SciPy."""
 
 import pickle
+import tempfile
 import unittest
 
 import numpy as np
@@ -9,6 +10,47 @@ from spillway import errors
 from support import as_set, needed, random_points
 
 COUNTS = {4: 1000, 5: 200, 6: 80}
+
+
+class HigherDimensionsOfStreams(unittest.TestCase):
+    def test_arrays_and_files_have_one_mesh(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for dim, count in COUNTS.items():
+                points = spillway.generate("uniform", count, dim=dim)
+                self.assertEqual(points.shape, (count, dim))
+                named = f"{folder}/points.npy"
+                np.save(named, points)
+                mesh = f"{folder}/mesh.spm"
+                report = spillway.triangulate(points, mesh, dim=dim)
+                again = spillway.triangulate(named, f"{folder}/again.spm", dim=dim)
+                self.assertEqual(report.canonical_hash, again.canonical_hash)
+                self.assertEqual(report.simplices, spillway.Delaunay(points).nsimplex)
+                self.assertIn("simplices", repr(report))
+                self.assertTrue(spillway.check(mesh, points).proved)
+                low, high = spillway.info(mesh).extent
+                np.testing.assert_array_equal(low, points.min(axis=0))
+                np.testing.assert_array_equal(high, points.max(axis=0))
+
+    def test_blocks_have_rows_of_all_coordinates(self):
+        points = spillway.generate("normal", 600, dim=4)
+        simplices, vertices = [], np.zeros_like(points)
+        for block in spillway.blocks(points, dim=4, tile_points=150, id=True):
+            self.assertEqual(block.attributes, {})
+            np.testing.assert_array_equal(block.vertices, points[block.input_index])
+            vertices[block.first_vertex :][: len(block.vertices)] = block.vertices
+            simplices.append(block.simplices)
+        corners = np.sort(vertices[np.concatenate(simplices)][:, :, 0])
+        tri = spillway.Delaunay(points)
+        expected = np.sort(points[tri.simplices][:, :, 0])
+        np.testing.assert_array_equal(as_set(corners), as_set(expected))
+
+    def test_wrong_dimensions_are_errors(self):
+        points = random_points(50, 4)
+        for dim in (2, 3, 5, 7):
+            with self.assertRaises(errors.InvalidArgumentError):
+                spillway.triangulate(points, "a.spm", dim=dim)
+        with self.assertRaisesRegex(errors.InvalidArgumentError, "no simplices of 4 dimensions"):
+            spillway.triangulate(points, "a.ply", dim=4)
 
 
 class HigherDimensions(unittest.TestCase):

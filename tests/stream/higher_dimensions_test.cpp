@@ -69,7 +69,9 @@ void expect_stream_has(const std::vector<Point<D>>& points, const Simplices<D>& 
 }
 
 /// Sets of that many points are done in less than a second.
-std::uint64_t some_points(int dimension) { return dimension == 4 ? 500 : dimension == 5 ? 150 : 70; }
+std::uint64_t some_points(int dimension) {
+  return dimension == 4 ? 500 : dimension == 5 ? 150 : 70;
+}
 
 /// A whole lattice.
 std::uint64_t lattice_points(int dimension) {
@@ -163,8 +165,8 @@ TEST_P(StreamOfHigherDimension, HasTheSameBlocksForAnyThreadCount) {
 TEST(StreamOfFourDimensions, KeepsABorderInMemoryAndWritesTheRest) {
   const auto points = generated_points<4>({.count = 6'000});
   const std::string path = write_points<4>(points);
-  const StreamRun run =
-      run_stream<4>(path, {.asked = {.tile_points = 1'600}, .threads = 2, .buffered_points = 1'000});
+  const StreamRun run = run_stream<4>(
+      path, {.asked = {.tile_points = 1'600}, .threads = 2, .buffered_points = 1'000});
   std::filesystem::remove(path);
   EXPECT_GT(run.statistics.spilled_points, 3'000U);
   EXPECT_GT(run.statistics.border_simplices, 0U);

@@ -94,6 +94,7 @@ spillway_test(stream_library_test unit
           stream/library/convert_points_test.cpp stream/library/generate_grid_test.cpp
           stream/library/generate_test.cpp stream/library/misuse_test.cpp
           stream/library/passed_on_test.cpp stream/library/runs_beside_test.cpp
+          stream/library/higher_dimensions_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
           stream/library/products/check_test.cpp stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp

@@ -17,6 +17,7 @@ function(spillway_command_test name label)
 endfunction()
 
 spillway_command_test(cli_tests cli
+  tools/commands/cli_dimensions_test.cpp
   tools/commands/cli_formats_test.cpp
   tools/commands/cli_info_check_test.cpp
   tools/commands/cli_shared_data_test.cpp

@@ -69,10 +69,11 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
   app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
       .required()
       .value_name("FILE");
-  add_dimension(app, options.dimension,
-                "2: triangles over x, y, with z carried along; 3: tetrahedra; 4 to 6: simplices, of "
-                "npy arrays with so many columns, and of points with attributes x4, x5, x6",
-                6);
+  add_dimension(
+      app, options.dimension,
+      "2: triangles over x, y, with z carried along; 3: tetrahedra; 4 to 6: simplices, of "
+      "npy arrays with so many columns, and of points with attributes x4, x5, x6",
+      6);
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   add_attributes(app, options.attributes,
                  "Attributes of points that vertices keep [none; of ply the colour]");

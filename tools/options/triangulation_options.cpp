@@ -97,9 +97,9 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
 
 void check_duplicates(const TriangulationOptions& options, int dimension) {
   if (dimension == 2) return;
-  refuse_given(*options.app, {"--heights"},
-               fmt::format("with --dim {}, as it chooses a height for points of equal x and y",
-                           dimension));
+  refuse_given(
+      *options.app, {"--heights"},
+      fmt::format("with --dim {}, as it chooses a height for points of equal x and y", dimension));
 }
 
 void check_heights(const TriangulationOptions& options, const PointsHeader& points) {

@@ -204,9 +204,9 @@ void read_simplices(FileSystem& files, const std::string& path, int coordinates,
   mesh.header.dimension = static_cast<int>(columns) - 1;
   const int needed = std::max(mesh.header.dimension, std::min(coordinates, kOwnAxes));
   if (coordinates != needed) {
-    array.fail(fmt::format(
-        "these are {}, but the vertices have {} coordinates; save them as n x {}",
-        simplices_text(mesh.header.dimension), coordinates, needed));
+    array.fail(
+        fmt::format("these are {}, but the vertices have {} coordinates; save them as n x {}",
+                    simplices_text(mesh.header.dimension), coordinates, needed));
   }
   array.read_rows(
       columns, [&](std::uint64_t rows) { mesh.corners.reserve(rows * columns); },

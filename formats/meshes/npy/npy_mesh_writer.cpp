@@ -71,8 +71,8 @@ class NpyMeshWriter : public CheckedMeshWriter {
         vertices_(std::move(files.main), array_of("<f8", {header.vertices, columns_of(header)})),
         simplices_(std::move(files.simplices),
                    array_of("<i8", {header.simplices, corners_per_simplex()})),
-        records_(header, without_scales(without_further_coordinates(header.attributes,
-                                                                    header.dimension))) {
+        records_(header,
+                 without_scales(without_further_coordinates(header.attributes, header.dimension))) {
     if (header.has_input_index) {
       input_index_.emplace(std::move(files.input_index), array_of("<i8", {header.vertices}));
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/npy/npy_types.h"
 #include "src/error.h"
 
@@ -55,7 +56,7 @@ NpyLayout layout_of_columns(const NpyHeader& header, const std::string& file) {
   NpyLayout layout{.count = header.shape[0], .row = {}};
   for (std::uint64_t c = 0; c < header.shape[1]; ++c) {
     const std::string name =
-        c < kCoordinates.size() ? std::string(kCoordinates[c]) : fmt::format("column_{}", c + 1);
+        c < kCoordinates.size() ? std::string(kCoordinates[c]) : column_name(static_cast<int>(c));
     layout.row.append(name, number->type, 1, number->swap);
   }
   return layout;

@@ -31,8 +31,8 @@ std::vector<NpyField> fields_of(int coordinates, const AttributeLayout& attribut
 /// The columns of an array without names: those of coordinates, if there is nothing else; or 0.
 int columns_of(int coordinates, const AttributeLayout& attributes) {
   const int columns = coordinates + static_cast<int>(attributes.fields().size());
-  const bool plain = attributes.empty() ||
-                     (coordinates == kOwnAxes && attributes == further_coordinates(columns));
+  const bool plain =
+      attributes.empty() || (coordinates == kOwnAxes && attributes == further_coordinates(columns));
   return plain ? columns : 0;
 }
 

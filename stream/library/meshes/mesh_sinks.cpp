@@ -45,8 +45,8 @@ MeshInMemory::~MeshInMemory() = default;
 
 std::span<const double> MeshInMemory::coordinate_column(int axis) const {
   if (axis >= header_.dimension) {
-    throw stream::InvalidArgument(fmt::format("a mesh of {} dimensions has no coordinate {}",
-                                      header_.dimension, axis + 1));
+    throw stream::InvalidArgument(
+        fmt::format("a mesh of {} dimensions has no coordinate {}", header_.dimension, axis + 1));
   }
   const Attribute& attribute = header_.attributes.at(static_cast<std::size_t>(axis - 3));
   return attributes_.values<double>(attribute.name);

@@ -106,10 +106,10 @@ ProgramBlocks::ProgramBlocks(const MeshHeader& header)
     throw InvalidArgument(fmt::format("a mesh has 2 to 6 dimensions, not {}", header.dimension));
   }
   if (!has_further_coordinates(header_.attributes, header.dimension)) {
-    throw InvalidArgument(
-        fmt::format("the first attributes of a mesh of {0} dimensions are its coordinates beyond z: "
-                    "x4 to x{0}, a float64 each, without a scale",
-                    header.dimension));
+    throw InvalidArgument(fmt::format(
+        "the first attributes of a mesh of {0} dimensions are its coordinates beyond z: "
+        "x4 to x{0}, a float64 each, without a scale",
+        header.dimension));
   }
   if (header.lattice && further_axes(header.dimension) > 0) {
     throw InvalidArgument("a mesh has a lattice, but coordinates beyond z are on none");

@@ -57,8 +57,7 @@ FacetCounts count_facets(const Mesh& mesh) {
 }
 
 FacetCounts facets_of(const Mesh& mesh) {
-  return with_dimension(mesh.header.dimension,
-                                 [&](auto d) { return count_facets<d>(mesh); });
+  return with_dimension(mesh.header.dimension, [&](auto d) { return count_facets<d>(mesh); });
 }
 
 /// The vertices as a stream with this lattice has them. In the plane heights need not be on it;
@@ -149,8 +148,7 @@ void WholeMesh::refuse_crowded_facet(const std::string& name) const {
   throw Failure(
       fmt::format("{}: more than two {} have the {} of the vertices {} (counted from 0), which spm "
                   "cannot hold; remove what is there twice",
-                  name, simplices_of(header_.dimension),
-                  header_.dimension == 2 ? "edge" : "facet",
+                  name, simplices_of(header_.dimension), header_.dimension == 2 ? "edge" : "facet",
                   fmt::join(crowded_, ", ")),
       ErrorCode::kBadInput, {.file = name});
 }

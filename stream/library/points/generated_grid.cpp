@@ -46,7 +46,11 @@ std::size_t files_at_a_time() {
                                  kMostOpenFiles);
 }
 
-SurveyGridShape checked_shape(const GridOptions& grid, std::uint64_t points) {
+SurveyGridShape checked_shape(const GridOptions& grid, int dimension, std::uint64_t points) {
+  if (dimension > 3) {
+    throw InvalidArgument(
+        fmt::format("the files of a grid have points of 2 or 3 dimensions, not {}", dimension));
+  }
   if (points == 0) {
     throw InvalidArgument("a grid of 0 points would have no files: ask for 1 point at least");
   }
@@ -127,7 +131,7 @@ class GridWriter {
   GridWriter(const GenerateOptions& points, const std::string& path, const GridOptions& grid,
              const Context& context)
       : points_(points),
-        shape_(checked_shape(grid, points.count)),
+        shape_(checked_shape(grid, points.dimension, points.count)),
         names_(path, shape_.columns, shape_.rows),
         path_(path),
         options_{.format = grid.format, .las_version = grid.las_version, .exact = true},

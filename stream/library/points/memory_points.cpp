@@ -23,8 +23,8 @@ void MemoryPoints<D>::check() const {
   for (int axis = kOwnAxes; axis < D; ++axis) {
     for (const Attribute& attribute : offered_.attributes()) {
       if (attribute.name != coordinate_name(axis)) continue;
-      throw InvalidArgument(fmt::format("an attribute is called {}, as a coordinate of the points is",
-                                        attribute.name));
+      throw InvalidArgument(fmt::format(
+          "an attribute is called {}, as a coordinate of the points is", attribute.name));
     }
   }
   if (offered_.empty() || offered_.size() == points_.size()) return;
@@ -144,13 +144,14 @@ void PointSink::write(std::span<const Point<3>> points, const AttributeColumns& 
 }
 void PointSink::finish() {}
 
-#define SPILLWAY_DEFINE(D)                                                                          \
-  std::unique_ptr<PointSource> points_in_memory(PointView<D> points, AttributeColumns attributes) { \
-    return std::make_unique<stream::MemoryPoints<D>>(points, std::move(attributes));                \
-  }                                                                                                 \
-  std::unique_ptr<PointSource> points_in_memory(std::vector<Point<D>>&& points,                     \
-                                                AttributeColumns attributes) {                      \
-    return std::make_unique<stream::MemoryPoints<D>>(std::move(points), std::move(attributes));     \
+#define SPILLWAY_DEFINE(D)                                                                      \
+  std::unique_ptr<PointSource> points_in_memory(PointView<D> points,                            \
+                                                AttributeColumns attributes) {                  \
+    return std::make_unique<stream::MemoryPoints<D>>(points, std::move(attributes));            \
+  }                                                                                             \
+  std::unique_ptr<PointSource> points_in_memory(std::vector<Point<D>>&& points,                 \
+                                                AttributeColumns attributes) {                  \
+    return std::make_unique<stream::MemoryPoints<D>>(std::move(points), std::move(attributes)); \
   }
 SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_DEFINE)
 #undef SPILLWAY_DEFINE

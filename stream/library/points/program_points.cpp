@@ -22,7 +22,8 @@ ProgramPoints::ProgramPoints(PointSource& source, int dimension)
       extent_(world_extent_) {
   if (!lattice_) return;
   heights_on_lattice_ = header_.lattice->has_z;
-  if (dimension > kOwnAxes || !lattice_->isotropic(std::max(1, dimension)) || (dimension == 3 && !heights_on_lattice_)) {
+  if (dimension > kOwnAxes || !lattice_->isotropic(std::max(1, dimension)) ||
+      (dimension == 3 && !heights_on_lattice_)) {
     lattice_.reset();
   } else if (extent_) {
     extent_ = nearest_integers(*lattice_, *world_extent_);
@@ -58,10 +59,10 @@ void ProgramPoints::check_coordinate(int axis) const {
       field->attribute.offset == 0) {
     return;
   }
-  throw InvalidArgument(
-      fmt::format("coordinate {} of points of {} dimensions is an attribute of one float64, without "
-                  "a scale, called {}, but the header tells of none",
-                  axis + 1, dimension_, is.name));
+  throw InvalidArgument(fmt::format(
+      "coordinate {} of points of {} dimensions is an attribute of one float64, without "
+      "a scale, called {}, but the header tells of none",
+      axis + 1, dimension_, is.name));
 }
 
 bool ProgramPoints::fetch(SourcePiece& piece) {
@@ -104,8 +105,7 @@ void ProgramPoints::decode(SourcePiece& piece, PointBlock& block) {
     const std::byte* const record = &block.attributes[i * block.record_size()];
     const int axis = check.bad_axis(record);
     if (axis == 0) continue;
-    throw InvalidArgument(
-        fmt::format("point {} has {}", block.index[i], check.text(axis, record)));
+    throw InvalidArgument(fmt::format("point {} has {}", block.index[i], check.text(axis, record)));
   }
 }
 

@@ -41,7 +41,7 @@ class ProgramPoints final : public PointStream, public EnginePoints {
   AttributeLayout told_;         ///< that each block of the program has
   AttributeLayout attributes_;   ///< those of them that are wanted
   spillway::PointsBlock block_;  ///< that was read last
-  int dimension_;  ///< in which they are triangulated; 0: they are not
+  int dimension_;                ///< in which they are triangulated; 0: they are not
   std::optional<IntegerLattice> lattice_;
   bool heights_on_lattice_ = false;
   std::optional<Box<3>> world_extent_;

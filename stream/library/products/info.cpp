@@ -67,9 +67,9 @@ class OutsidePoints {
 class FurtherExtent {
  public:
   explicit FurtherExtent(int dimension)
-      : ranges_(static_cast<std::size_t>(further_axes(dimension)),
-                {std::numeric_limits<double>::infinity(),
-                 -std::numeric_limits<double>::infinity()}) {}
+      : ranges_(
+            static_cast<std::size_t>(further_axes(dimension)),
+            {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {}
 
   /// Takes a record that begins with them.
   void add(std::span<const std::byte> record) {

@@ -207,8 +207,8 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
       watch.end(tree.divide_large());
     }
     watch.begin("compare", "points");
-    distinct = with_dimension(
-        dimension_, [&](auto d) { return TreeComparison<d>(tree, faults, watch).run(); });
+    distinct = with_dimension(dimension_,
+                              [&](auto d) { return TreeComparison<d>(tree, faults, watch).run(); });
     watch.end(tree.points());
   });
   if (faults.count() > before) return;

@@ -178,14 +178,13 @@ std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std
 
 std::vector<DivisionCut> divide_sample(std::span<const LatticePoint> sample, std::size_t parts,
                                        int dimension) {
-  return with_cut_dimension(dimension,
-                                 [&](auto d) { return divide_sample<d>(sample, parts); });
+  return with_cut_dimension(dimension, [&](auto d) { return divide_sample<d>(sample, parts); });
 }
 
 std::vector<DivisionCut> divide_sample_evenly(std::span<const LatticePoint> sample,
                                               std::size_t parts, int dimension) {
   return with_cut_dimension(dimension,
-                                 [&](auto d) { return divide_longest_axes<d>(sample, parts); });
+                            [&](auto d) { return divide_longest_axes<d>(sample, parts); });
 }
 
 #define SPILLWAY_INSTANTIATE(D) \

@@ -253,7 +253,7 @@ std::optional<Cut> cut_beside(const Box<3>& box, const LatticePoint& place, int 
 bool is_clearly_hollow(std::span<const LatticePoint> sample, int dimension) {
   if (sample.size() < kLeastToldSample) return false;
   return with_cut_dimension(dimension,
-                                 [&](auto d) { return filled_share_of<d>(sample) < kHollow; });
+                            [&](auto d) { return filled_share_of<d>(sample) < kHollow; });
 }
 
 bool some_cut_pays(std::span<const LatticePoint> sample, int dimension) {

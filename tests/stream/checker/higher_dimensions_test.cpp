@@ -64,8 +64,8 @@ class ProofOfHigherDimension : public ::testing::TestWithParam<int> {
 
 TEST_P(ProofOfHigherDimension, HoldsOfEveryFamily) {
   for_dimension([](auto d) {
-    for (const Family family : {Family::kUniform, Family::kLattice, Family::kCircle, Family::kLines,
-                                Family::kClusters}) {
+    for (const Family family :
+         {Family::kUniform, Family::kLattice, Family::kCircle, Family::kLines, Family::kClusters}) {
       SCOPED_TRACE(family_names()[static_cast<std::size_t>(family)]);
       const std::uint64_t count = family == Family::kLattice ? lattice_points() : some_points();
       const CheckReport report =

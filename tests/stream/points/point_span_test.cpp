@@ -43,17 +43,17 @@ std::vector<LatticePoint> flat_points(int dimension, int count) {
 TEST(PointSpan, OfALineAndAPlaneIsToldAndOnePointBesideChangesIt) {
   std::vector<LatticePoint> line = flat_points(1, 5000);
   PointSpan<2> on_line;
-  on_line.add(line);
+  on_line.add(PointsView{line});
   EXPECT_THAT(refusal(on_line, 5000), HasSubstr("all 5000 points lie on one line"));
   PointSpan<3> line_in_space;
-  line_in_space.add(line);
+  line_in_space.add(PointsView{line});
   EXPECT_THAT(refusal(line_in_space, 5000), HasSubstr("one line: there is no tetrahedron"));
   PointSpan<3> plane;
-  plane.add(flat_points(2, 5000));
+  plane.add(PointsView{flat_points(2, 5000)});
   EXPECT_THAT(refusal(plane, 5000), HasSubstr("in one plane"));
   const std::vector<LatticePoint> beside = {{0, 1e-9, 0}};
-  on_line.add(beside);
-  plane.add(beside);
+  on_line.add(PointsView{beside});
+  plane.add(PointsView{beside});
   EXPECT_TRUE(on_line.full());
   EXPECT_TRUE(plane.full());
   EXPECT_EQ(refusal(plane, 5001), "");
@@ -62,12 +62,12 @@ TEST(PointSpan, OfALineAndAPlaneIsToldAndOnePointBesideChangesIt) {
 TEST(PointSpan, OfFewDistinctPointsNamesTheirNumber) {
   const std::vector<LatticePoint> two = {{1, 2, 3}, {4, 5, 6}, {1, 2, 3}, {4, 5, 6}};
   PointSpan<2> span;
-  span.add(std::span(two).first(1));
+  span.add(PointsView{std::span(two).first(1)});
   EXPECT_THAT(refusal(span, 1), HasSubstr("only 1 distinct point:"));
-  span.add(two);
+  span.add(PointsView{two});
   EXPECT_THAT(refusal(span, 4), HasSubstr("only 2 distinct points"));
   const std::vector<LatticePoint> third = {{7, 8, 0}};
-  span.add(third);
+  span.add(PointsView{third});
   EXPECT_THAT(refusal(span, 5), HasSubstr("all 5 points lie on one line"));
 }
 
@@ -77,7 +77,7 @@ TEST(PointSpan, DoesNotDependOnHowManyThreadsAddWhatFirst) {
     PointSpan<3> span;
     with_threads(threads, [&] {
       parallel_for(points.size(), 500, [&](std::size_t, std::size_t begin, std::size_t end) {
-        span.add(std::span(points).subspan(begin, end - begin));
+        span.add(PointsView{std::span(points).subspan(begin, end - begin)});
       });
     });
     EXPECT_THAT(refusal(span, points.size()), HasSubstr("in one plane"));
@@ -89,13 +89,14 @@ TEST(PointSpan, OfPartsIsThatOfTheWhole) {
   PointSpan<3> all;
   for (std::size_t begin = 0; begin < points.size(); begin += 7) {
     PointSpan<3> part;
-    part.add(std::span(points).subspan(begin, std::min<std::size_t>(7, points.size() - begin)));
+    part.add(PointsView{
+        std::span(points).subspan(begin, std::min<std::size_t>(7, points.size() - begin))});
     all.add(part.facts());
   }
   EXPECT_THAT(refusal(all, 3000), HasSubstr("in one plane"));
   PointSpan<3> other;
   const std::vector<LatticePoint> beside = {{0.5, 0.25, 0}};
-  other.add(beside);
+  other.add(PointsView{beside});
   all.add(other.facts());
   EXPECT_TRUE(all.full());
 }

@@ -92,6 +92,20 @@ TEST_F(RanksOfTheCommand, SalvageAsOneProcessDoesAndNameTheFiles) {
   EXPECT_EQ(filters["read"].get<int>() + filters["lost"].get<int>(), 600000);
 }
 
+TEST_F(RanksOfTheCommand, MakeTheSameMeshInHigherDimensions) {
+  for (const int dimension : {4, 5}) {
+    for (const char* family : {"uniform", "lattice"}) {
+      const int points = dimension == 4 ? 2'401 : 243;
+      work_.succeed(fmt::format("spillway generate -q {} -n {} --dim {} -o in.npy", family, points,
+                                dimension));
+      for (const int count : {2, 3}) {
+        expect_same_mesh(count, fmt::format("--dim {} in.npy --memory 1G", dimension));
+        work_.succeed("spillway check -q b.spm --points in.npy");
+      }
+    }
+  }
+}
+
 TEST_F(RanksOfTheCommand, LeaveOutBrokenFilesWithExitCode1) {
   work_.succeed(
       "spillway generate -q terrain -n 20000 -o in.las\n"
@@ -463,8 +477,8 @@ class RanksThatAreStopped : public RanksThatFail, public ::testing::WithParamInt
     }
     end_stuck_mpirun(scratch, ended);
     job.join();
-    ASSERT_EQ(processes.size(), 3U) << "mpirun ended by itself with " << result.exit_code << ": "
-                                    << result.err;
+    ASSERT_EQ(processes.size(), 3U)
+        << "mpirun ended by itself with " << result.exit_code << ": " << result.err;
     if (work_.has("b.spm")) {  // done before mpirun had ended it: then it is complete
       EXPECT_EQ(work_.info("b.spm").at("points"), 3'000'000);
       std::filesystem::remove(work_.folder() / "b.spm");

@@ -60,9 +60,8 @@ std::vector<std::pair<Corners, bool>> sorted(int dimension, const Corners& corne
     std::sort(own.begin(), own.end());
     simplices.emplace_back(own, is_odd(simplex));
   }
-  std::stable_sort(simplices.begin(), simplices.end(), [](const auto& a, const auto& b) {
-    return a.first.front() < b.first.front();
-  });
+  std::stable_sort(simplices.begin(), simplices.end(),
+                   [](const auto& a, const auto& b) { return a.first.front() < b.first.front(); });
   return simplices;
 }
 
@@ -93,8 +92,8 @@ TEST(SpmSimplices, ComeBackWhereAPointHasMoreNeighboursThanAByteCounts) {
   for (const std::uint32_t others : {254U, 255U, 256U, 257U, 3'000U}) {
     Corners corners;
     for (std::uint32_t s = 0; s < others; ++s) {
-      corners.insert(corners.end(), {0, s + 1, (s + 1) % others + 1, (s + 2) % others + 1,
-                                     (s + 3) % others + 1});
+      corners.insert(corners.end(),
+                     {0, s + 1, (s + 1) % others + 1, (s + 2) % others + 1, (s + 3) % others + 1});
     }
     expect_round_trip(4, others + 1, corners);
   }
