@@ -35,8 +35,8 @@ struct MeshHeader {
   /// On which x and y of all vertices lie and, in space, z. In the plane z may lie between its
   /// steps, as means of heights do.
   std::optional<Lattice> lattice{};
-  /// What vertices carry of the points that they are. The first dimension - 3 are coordinates beyond
-  /// z: x4, x5, x6, a float64 each.
+  /// What vertices carry of the points that they are. The first dimension - 3 are their coordinates
+  /// beyond z, a float64 each: x4, x5, x6, or as the points' source calls them.
   std::vector<Attribute> attributes{};
 };
 

@@ -136,8 +136,8 @@ SPILLWAY_API std::unique_ptr<PointSource> open_points(const std::vector<std::str
                                                       const Context& context);
 
 /// Points as they lie in a program's memory, which must stay there while they are read, and what
-/// they carry, which the source keeps. Coordinates beyond z come as attributes called x4, x5 and x6.
-/// Throws Error(kInvalidArgument) for attributes of another number of points, or of such a name.
+/// they carry, which the source keeps. Coordinates beyond z come as attributes: x4, x5 and x6. Throws
+/// Error(kInvalidArgument) for attributes of another number of points, or of such a name.
 SPILLWAY_API std::unique_ptr<PointSource> points_in_memory(PointView<3> points,
                                                            AttributeColumns attributes = {});
 /// The same without z.

@@ -31,8 +31,8 @@ class Block(NamedTuple):
     first_vertex: int
     """The number of the first of `vertices`."""
     vertices: Floats
-    """Those that come for the first time, shape (n, 3), of more dimensions (n, dim); of points without z
-    this is 0."""
+    """Those that come for the first time, shape (n, 3), of more dimensions (n, dim); z is 0 where
+    points have none."""
     simplices: NDArray[np.int64]
     """Numbers of vertices, positively oriented, shape (m, dim + 1)."""
     finalized: NDArray[np.int64]

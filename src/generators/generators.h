@@ -71,7 +71,7 @@ class PointGenerator {
   [[nodiscard]] virtual const IntegerLattice* lattice() const { return nullptr; }
 };
 
-/// The stream of those points. Throws InvalidArgument for a dimension that the family does not have,
+/// The stream of those points. Throws InvalidArgument for a dimension that the family doesn't have,
 /// and Failure for a terrain so large that its centimetres would leave the 32-bit integers of LAS.
 std::unique_ptr<PointGenerator> make_generator(const GeneratorOptions& options);
 

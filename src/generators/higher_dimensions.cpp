@@ -75,8 +75,8 @@ Point<D> ellipsoid(std::uint64_t seed, std::uint64_t i, std::uint64_t /*size*/) 
   return p;
 }
 
-/// Lines in general position, so many that they span the space: 3 or 4. Points of a round are at the
-/// same place of their lines.
+/// Lines in general position, so many that they span the space: 3 or 4. Points of a round are at
+/// the same place of their lines.
 template <int D>
 Point<D> lines(std::uint64_t seed, std::uint64_t i, std::uint64_t /*size*/) {
   constexpr std::uint64_t kLines = D / 2 + 1;
@@ -101,8 +101,8 @@ Point<D> lattice(std::uint64_t /*seed*/, std::uint64_t i, std::uint64_t size) {
   return p;
 }
 
-/// As on the sphere in space: D - 1 angles with rational cosines and sines, all of an integer circle
-/// of radius r, give a point of the integer sphere of radius r^(D - 1), which is below 2^53.
+/// As on the sphere in space: D - 1 angles with rational cosines and sines, all of an integer
+/// circle of radius r, give a point of the integer sphere of radius r^(D - 1), which is below 2^53.
 template <int D>
 Point<D> circle(std::uint64_t seed, std::uint64_t i, std::uint64_t /*size*/) {
   static const IntegerCircle angles(D == 4 ? 4 : 3);

@@ -24,8 +24,8 @@ struct WorkForecast {
   static WorkForecast of(const SampleSize& smaller, const SampleSize& larger, int dimension,
                          double simplex_bytes) {
     // There are at most about as many simplices as this power of the points (McMullen's upper bound
-    // theorem). In a small sample relatively many of them are on the hull, and it seems less than it
-    // is.
+    // theorem). In a small sample relatively many of them are on the hull, and it seems less than
+    // it is.
     const double most = (dimension + 1) / 2;  // NOLINT(bugprone-integer-division): rounded down
     constexpr double kHull = 0.1;
     WorkForecast forecast{.points = static_cast<double>(larger.points),

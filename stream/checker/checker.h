@@ -24,8 +24,8 @@ struct CheckerOptions : CheckOptions {
   unsigned threads = 1;  ///< 0: as many as the machine has
   /// If set, is told now and then how many simplices are done, and the reader's fraction_read().
   std::function<void(std::uint64_t simplices, std::optional<double> fraction)> progress{};
-  /// If set, is given the output coordinates of all vertices, in the stream's order: x, y and z, and
-  /// a record with those beyond.
+  /// If set, is given the output coordinates of all vertices, in the stream's order: x, y and z,
+  /// and a record with those beyond.
   std::function<void(const WorldPoint& vertex, std::span<const std::byte> further)> vertex{};
 };
 

@@ -16,8 +16,8 @@ void check_choice(Choice value, Choice last, const char* what) {
   throw InvalidArgument(fmt::format("there is no {} of number {}", what, number));
 }
 
-/// Throws Failure (kInvalidArgument) for simplices of more than three dimensions, of which what comes
-/// of a mesh is not made: "a picture shows", "a product is made of".
+/// Throws Failure (kInvalidArgument) for simplices of more than three dimensions, of which what
+/// comes of a mesh is not made: "a picture shows", "a product is made of".
 inline void refuse_higher_dimensions(int dimension, const char* what) {
   if (dimension <= 3) return;
   throw InvalidArgument(fmt::format("{} triangles and tetrahedra, and the mesh is of {}", what,

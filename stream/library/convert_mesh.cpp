@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
@@ -25,7 +26,8 @@ Report convert(MeshStreamReader& reader, const std::string& name,
   const AttributeLayout& there = reader.header().attributes;
   sink.check_attributes(there);
   MeshStart start{.header = reader.header(), .name = name};
-  start.header.attributes = chosen(there, sink.wanted_attributes(false));
+  start.header.attributes =
+      chosen_beside_coordinates(there, sink.wanted_attributes(false), dimension);
   start.header.crs = crs;
   BlockSink& blocks = sink.start(start);
   if (extent) sink.extent_known(extent->box, extent->vertices);

@@ -50,18 +50,20 @@ void check(const RunPoints& points, int dimension) {
                     points.files != nullptr ? "the files were opened for" : "the points have",
                     points.dimension, dimension));
   }
+  const bool lacks_coordinates = further_axes(dimension) > 0 && points.dimension == 0;
   const std::optional<IntegerLattice>& lattice = points.stream->lattice();
-  if (points.files != nullptr && lattice && !lattice->isotropic(dimension)) {
+  if (points.files != nullptr &&
+      (lacks_coordinates || (lattice && !lattice->isotropic(dimension)))) {
     throw InvalidArgument(fmt::format(
         "the files were not opened to be triangulated: open them for {} dimensions", dimension));
   }
-  // Files without z are told of when they are opened.
-  if (points.dimension == 0 && dimension >= 3 && !points.has_heights) {
-    throw Failure("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
-  }
-  if (!has_further_coordinates(points.attributes, dimension)) {
+  if (lacks_coordinates) {
     throw InvalidArgument(fmt::format(
         "the points have x, y and z, but are to be triangulated in {} dimensions", dimension));
+  }
+  // Files without z are told of when they are opened.
+  if (points.dimension == 0 && dimension == 3 && !points.has_heights) {
+    throw Failure("the points have no z", ErrorCode::kDegenerateInput, {.remedy = Remedy::kPlane});
   }
 }
 

@@ -49,21 +49,24 @@ constexpr Costs kSpace{.leaf_bytes = 800,
                        .least_limit = 96 * kMiB};
 
 /// With four dimensions and more a point has 32, 190 or 1,300 simplices, and a border is a large
-/// part of a tile: few large leaves.
-constexpr Costs higher(std::size_t leaf_bytes, std::size_t tile_bytes, std::uint64_t least_limit) {
+/// part of a tile: few large leaves. Those whose simplices make a block of some 128 MiB are the
+/// largest.
+constexpr Costs higher(std::size_t leaf_bytes, std::size_t tile_bytes, std::size_t good_leaf,
+                       std::uint64_t least_limit) {
   return {.leaf_bytes = leaf_bytes,
           .tile_bytes = tile_bytes,
           .good_tile = std::numeric_limits<std::size_t>::max(),
-          .good_leaf = 262'144,
-          .small_leaf = 65'536,
+          .good_leaf = good_leaf,
+          .small_leaf = good_leaf / 4,
           .enough_leaves = 2,
           .buffer_share = 0.2,
           .leaf_share = 0.25,
           .leaves_share = 0.5,
           .least_limit = least_limit};
 }
-constexpr std::array kHigher = {higher(5'000, 1'500, 128 * kMiB), higher(36'000, 8'000, 256 * kMiB),
-                                higher(300'000, 60'000, 512 * kMiB)};
+constexpr std::array kHigher = {higher(5'000, 1'500, 262'144, 128 * kMiB),
+                                higher(36'000, 8'000, 131'072, 256 * kMiB),
+                                higher(300'000, 60'000, 16'384, 512 * kMiB)};
 
 /// What is not shared out: gaps between what is in use, tables, and code that is loaded when it is
 /// first run. More where points are read and tiles are triangulated at the same time.
@@ -134,7 +137,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
   plan.leaf_points =
       std::min({costs.good_leaf, share(limit, costs.leaf_share, leaf_bytes), plan.tile_points});
   plan.waiting_bytes = share(limit, kWaitingShare, 1);
-  plan.sketch_bytes = share(limit, kSketchShare, 1);
+  plan.sketch_bytes = dimension > 3 ? 0 : share(limit, kSketchShare, 1);
   plan.batches = std::clamp(
       share(limit, kBatchesShare, kBatchPoints * (kBatchPointBytes + kBatchRecords * record_size)),
       early ? kLeastEarlyBatches : kLeastBatches,

@@ -13,6 +13,7 @@
 #include "formats/meshes/part_file_names.h"
 #include "formats/meshes/spm/spm_encoding.h"
 #include "formats/meshes/spool/spm_section.h"
+#include "src/geometry/dimensions.h"
 #include "stream/output/unpaired_facets.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/part_file_numbers.h"
@@ -117,8 +118,6 @@ class PartFiles : public MeshOutput {
     return part_file_name(target.path, *target.format, ranks.rank(), ranks.size());
   }
 
-  [[nodiscard]] bool plane() const { return spool_.header().dimension == 2; }
-
   MeshTotals fill_spool(RankMesh& mesh, std::vector<IdRange>& ids) {
     PartFileNumbers numbers(mesh);
     MeshTotals totals;
@@ -138,7 +137,8 @@ class PartFiles : public MeshOutput {
   }
 
   void write_stream(MeshTotals totals) {
-    totals.hull_facets = plane() ? count_open_facets<2>(spool_) : count_open_facets<3>(spool_);
+    totals.hull_facets = with_dimension(spool_.header().dimension,
+                                        [&](auto d) { return count_open_facets<d>(spool_); });
     HeldOutput file(*file_, bytes_);
     file.write(spm_head(spool_.header()));
     SpmSection blocks(spool_, 0);

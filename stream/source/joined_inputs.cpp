@@ -58,7 +58,7 @@ JoinedInputs::JoinedInputs(FileSystem& files, const JoinedInputsOptions& options
       paths_(std::move(survey.paths)),
       skipped_(std::move(survey.skipped)),
       pieces_(files, paths_, facts_, std::move(survey.readers),
-              {reader_options(options), std::move(viewer), options.detail}),
+              {options.dimension, reader_options(options), std::move(viewer), options.detail}),
       world_extent_(find_world_extent()) {
   carry({});
   if (const auto told = facts_.extent(options.filter.bounds))
@@ -290,22 +290,18 @@ void JoinedInputs::check_further_coordinates(const SourcePiece& piece, PointBloc
   if (further_axes(options_.dimension) == 0) return;
   const PointHeader& header = facts_.inputs[piece.input].header;
   const CoordinateCheck check(header.attributes, options_.dimension);
-  const std::size_t record_size = read_attributes_.record_size();
-  const auto record = [&](std::size_t i) { return &block.attributes[i * record_size]; };
-  if (options_.reader.skip_invalid) {
-    const std::size_t before = block.size();
-    block.keep([&](std::size_t i) { return check.bad_axis(record(i)) == 0; });
-    block.invalid += before - block.size();
-    return;
-  }
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const int axis = check.bad_axis(record(i));
-    if (axis == 0) continue;
+  const std::size_t size = read_attributes_.record_size();
+  const auto bad = check.first_bad(block.attributes, size);
+  if (!bad) return;
+  if (!options_.reader.skip_invalid) {
     throw BadInput(header.name,
-                   fmt::format("point {} has {}; correct or remove the point", block.index[i],
-                               check.text(axis, record(i))),
-                   at_record(block.index[i]));
+                   fmt::format("point {} has {}; correct or remove the point", block.index[*bad],
+                               check.text(&block.attributes[*bad * size])),
+                   at_record(block.index[*bad]));
   }
+  const std::size_t before = block.size();
+  block.keep([&](std::size_t i) { return check.is_point(&block.attributes[i * size]); });
+  block.invalid += before - block.size();
 }
 
 /// The points of all inputs reach the cells in their order.

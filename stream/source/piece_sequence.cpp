@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/inputs/open_points.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "stream/source/changed_input.h"
 
@@ -83,15 +84,20 @@ void PieceSequence::open_current() {
   const SourceFacts::Input& surveyed = facts_.inputs[current()];
   // A digest tells more, and what comes from another process has no regions.
   if (!surveyed.digest) refuse_changed_input(surveyed, input.path, *reader);
-  if (!attributes_.empty()) reader->carry(attributes_);
+  if (!attributes_.empty()) carry_by(*reader);
   input.reader = std::move(reader);
 }
 
 void PieceSequence::carry(const AttributeLayout& attributes) {
   attributes_ = attributes;
   for (const Input& input : inputs_) {
-    if (input.reader) input.reader->carry(attributes);
+    if (input.reader) carry_by(*input.reader);
   }
+}
+
+/// A reader finds attributes by the names that its own source has.
+void PieceSequence::carry_by(PointReader& reader) const {
+  reader.carry(with_names_of(reader.header().attributes, attributes_, options_.dimension));
 }
 
 /// Looks at a file once; what has changed since is not seen.

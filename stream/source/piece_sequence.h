@@ -18,6 +18,7 @@
 namespace spillway::stream {
 
 struct PieceSequenceOptions {
+  int dimension = 0;  ///< of the points: the first attributes are coordinates beyond z
   PointReaderOptions reader{};
   /// Who reads files that another process has looked at, for messages; empty: it was this one.
   std::string viewer{};
@@ -77,6 +78,7 @@ class PieceSequence {
   [[nodiscard]] std::optional<double> fraction_read() const;
 
  private:
+  void carry_by(PointReader& reader) const;
   struct Input {
     std::string path;
     std::shared_ptr<PointReader> reader;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <utility>
 
 #include "formats/state/state_reader.h"
@@ -165,6 +166,9 @@ std::optional<TileNode<D>> TileLoader::nodes_below(CutTree::NodeRef ref, const B
   Joinable<D> last = join_below<D>(ref, all, tiles);
   if (last.tile) tiles.push_back(std::move(*last.tile));
   if (tiles.empty()) return std::nullopt;
+  if (cut_axes(D) < D && all.empty()) {
+    throw std::logic_error("nobody has told where points lie beyond z: a fault of the program");
+  }
   if constexpr (cut_axes(D) == D) {
     if (tiles.size() > 1 || table_.options.plan != nullptr) sketch(tiles);
   }

@@ -99,7 +99,7 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .extent = expected.extent,
           .index = index,
           .record_size = options_.record_size,
-          .sketch_bytes = cut_axes(D) < D ? 0 : plan_.sketch_bytes,
+          .sketch_bytes = plan_.sketch_bytes,
           .batches = plan_.batches,
           .plan = expected.plan,
           .largest_undivided = std::min(

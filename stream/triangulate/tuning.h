@@ -15,8 +15,8 @@ template <int D>
 struct TileTuning {
   static constexpr std::size_t kSmallestJudged = std::numeric_limits<std::size_t>::max();
   static constexpr std::uint64_t kLeafBytes = D == 4 ? 5'000 : D == 5 ? 36'000 : 300'000;
-  static constexpr std::uint64_t kMergeBytes = 2 * kLeafBytes;
-  static constexpr std::uint64_t kAllBorderMergeBytes = 2 * kLeafBytes;
+  static constexpr std::uint64_t kMergeBytes = kLeafBytes * 6 / 5;
+  static constexpr std::uint64_t kAllBorderMergeBytes = kLeafBytes * 8 / 5;
 };
 
 template <>

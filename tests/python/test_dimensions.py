@@ -44,6 +44,14 @@ class HigherDimensionsOfStreams(unittest.TestCase):
         expected = np.sort(points[tri.simplices][:, :, 0])
         np.testing.assert_array_equal(as_set(corners), as_set(expected))
 
+    def test_blocks_of_a_mesh_have_them_too(self):
+        points = spillway.generate("normal", 200, dim=5)
+        with tempfile.TemporaryDirectory() as folder:
+            mesh = f"{folder}/mesh.spm"
+            spillway.triangulate(points, mesh, dim=5)
+            rows = np.concatenate([block.vertices for block in spillway.blocks(mesh)])
+        np.testing.assert_array_equal(np.unique(rows, axis=0), np.unique(points, axis=0))
+
     def test_wrong_dimensions_are_errors(self):
         points = random_points(50, 4)
         for dim in (2, 3, 5, 7):

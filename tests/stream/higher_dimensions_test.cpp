@@ -1,5 +1,5 @@
-// The contract in four to six dimensions, out of core: whatever the tiles, the leaves, the threads and
-// the order of the points, the stream holds the same simplices, which are CGAL's where these are the
+// The contract in four to six dimensions, out of core: whatever the tiles, the leaves, the threads
+// and the order of the points, the stream holds the same simplices, which are CGAL's where these are the
 // only ones.
 
 #include <gtest/gtest.h>

@@ -49,8 +49,8 @@ inline bool carries_attributes(const EngineOptions& options) { return options.th
 
 /// Keeps all blocks, and checks on the way that vertices are announced before and finalized after
 /// their last use, once each, and that a block imports what it uses or finalizes, and nothing else;
-/// and that attributes, if there are any besides coordinates, are those of the point with the vertex'
-/// index.
+/// and that attributes, if there are any besides coordinates, are those of the point with the
+/// vertex' index.
 class KeepingWriter : public BlockSink {
  public:
   explicit KeepingWriter(int dimension)

@@ -86,7 +86,7 @@ struct MeshFormat {
   /// Whether this is another way to write the format before it in the table, and read as that.
   bool is_variant = false;
 
-  int most_dimension = 2;  ///< of its simplices: 3 if it holds tetrahedra besides triangles
+  int most_dimension = 2;  ///< of its simplices: 3 means tetrahedra besides triangles
   bool holds_input_index = false;
   HeldAttributes held_attributes = HeldAttributes::kNone;
   bool takes_colour = false;        ///< unasked: vertices get the colour of their points

@@ -177,8 +177,13 @@ int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
   mesh.header.vertices = array.rows();
   const std::uint64_t columns = array.columns();
   mesh.header.attributes = further_coordinates(static_cast<int>(columns));
+  const std::size_t further = mesh.header.attributes.record_size();
   array.read_rows(
-      columns, [&](std::uint64_t rows) { mesh.vertices.reserve(rows); },
+      columns,
+      [&](std::uint64_t rows) {
+        mesh.vertices.reserve(rows);
+        mesh.attributes.reserve(rows * further);
+      },
       [&](const std::byte* row) {
         Point<6> point{};
         for (std::uint64_t axis = 0; axis < columns; ++axis) {
@@ -189,8 +194,8 @@ int read_vertices(FileSystem& files, const std::string& path, Mesh& mesh) {
           }
         }
         mesh.vertices.emplace_back(own_coordinates<6>(point));
-        append_further_coordinates<6>(point, mesh.attributes);
-        mesh.attributes.resize(mesh.vertices.size() * mesh.header.attributes.record_size());
+        const auto beyond = std::as_bytes(further_part<6>(point)).first(further);
+        mesh.attributes.insert(mesh.attributes.end(), beyond.begin(), beyond.end());
       });
   return static_cast<int>(columns);
 }
@@ -274,7 +279,7 @@ void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
     if (conversion.convert(piece.data(), row, &mesh.attributes[read * record], record, some)) {
       throw std::logic_error("the layout does not hold the numbers of its source");
     }
-    for (std::uint64_t v = read; v < read + some; ++v) {
+    for (std::uint64_t v = read; of_vertex > 0 && v < read + some; ++v) {
       std::copy_n(&coordinates[v * of_vertex], of_vertex, &mesh.attributes[v * record]);
     }
     read += some;

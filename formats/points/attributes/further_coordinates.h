@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,18 +30,26 @@ std::string column_name(int column);
 /// none.
 const AttributeField* find_coordinate(const AttributeLayout& layout, int axis);
 
-/// What points of a dimension carry through a triangulation: first their coordinates beyond z, which
-/// must be there, as doubles; then the attributes of a choice.
+/// What points of a dimension carry through a triangulation: first their coordinates beyond z, as
+/// doubles; then the attributes of a choice.
 AttributeLayout with_further_coordinates(const AttributeLayout& layout,
                                          const AttributeChoice& choice, int dimension);
+
+/// The same layout, whose first attributes are coordinates, with the names that a source has for
+/// these.
+AttributeLayout with_names_of(const AttributeLayout& source, const AttributeLayout& layout,
+                              int dimension);
 
 /// The attributes of points of a dimension that have nothing but coordinates.
 AttributeLayout further_coordinates(int dimension);
 
-/// Whether a layout begins with the coordinates beyond z of points of a dimension.
+/// Whether the first attributes may be the coordinates beyond z of points of a dimension: doubles.
 bool has_further_coordinates(const AttributeLayout& layout, int dimension);
 
-/// What is left of it without them.
+/// Of a layout whose first attributes are coordinates: these and a choice of the others, and the
+/// others alone.
+AttributeLayout chosen_beside_coordinates(const AttributeLayout& layout,
+                                          const AttributeChoice& choice, int dimension);
 AttributeLayout without_further_coordinates(const AttributeLayout& layout, int dimension);
 
 /// Which numbers of records are coordinates: finite ones, and exact where they were integers.
@@ -49,12 +58,18 @@ class CoordinateCheck {
   /// Of points of a dimension, from a source with these attributes.
   CoordinateCheck(const AttributeLayout& source, int dimension);
 
-  /// The first axis beyond z of which the record has no coordinate; 0 if it has all.
-  [[nodiscard]] int bad_axis(const std::byte* record) const;
-  /// "the coordinate nan (x4), which is not finite"
-  [[nodiscard]] std::string text(int bad_axis, const std::byte* record) const;
+  /// Whether the record has all coordinates.
+  [[nodiscard]] bool is_point(const std::byte* record) const { return !bad_axis(record); }
+  /// The first record that has not.
+  [[nodiscard]] std::optional<std::size_t> first_bad(std::span<const std::byte> records,
+                                                     std::size_t record_size) const;
+  /// What such a record has: "the coordinate nan (x4), which is not finite".
+  [[nodiscard]] std::string text(const std::byte* record) const;
 
  private:
+  /// Counted from that beyond z.
+  [[nodiscard]] std::optional<std::size_t> bad_axis(const std::byte* record) const;
+
   std::vector<Attribute> sources_;  ///< by axis beyond z
 };
 

@@ -13,6 +13,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/vectors/vector_formats.h"
 #include "src/error.h"
 #include "src/geometry/box.h"
@@ -141,7 +142,8 @@ class OwnSink : public PublicSink, public EngineSink {
     ProgramBlocks program(header);
     const MeshStreamHeader& stream = program.header();
     check_attributes(stream.attributes);
-    program.keep(chosen(stream.attributes, wanted_attributes(false)));
+    program.keep(
+        chosen_beside_coordinates(stream.attributes, wanted_attributes(false), header.dimension));
     const bool wants_extent = this->wants_extent() && header.dimension == 2;
     if (wants_extent && !stream.extent) {
       throw InvalidArgument("the header of the mesh must tell its extent");

@@ -44,12 +44,12 @@ MeshInMemory::MeshInMemory(std::vector<std::string> attributes) : wanted_(std::m
 MeshInMemory::~MeshInMemory() = default;
 
 std::span<const double> MeshInMemory::coordinate_column(int axis) const {
-  if (axis >= header_.dimension) {
+  if (axis >= header_.dimension ||
+      header_.attributes.size() + 3 <= static_cast<std::size_t>(axis)) {
     throw stream::InvalidArgument(
         fmt::format("a mesh of {} dimensions has no coordinate {}", header_.dimension, axis + 1));
   }
-  const Attribute& attribute = header_.attributes.at(static_cast<std::size_t>(axis - 3));
-  return attributes_.values<double>(attribute.name);
+  return attributes_.values<double>(header_.attributes[static_cast<std::size_t>(axis - 3)].name);
 }
 
 void MeshInMemory::begin(const MeshHeader& header) {

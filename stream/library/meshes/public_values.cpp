@@ -221,13 +221,10 @@ void ProgramBlocks::check_told(const Point<3>& told, const spillway::Point<3>& v
 
 void ProgramBlocks::check_further(const MeshStreamBlock& block) const {
   const CoordinateCheck check(header_.attributes, header_.dimension);
-  const std::size_t record_size = header_.attributes.record_size();
-  if (further_axes(header_.dimension) == 0) return;
-  for (std::size_t v = 0; v < block.vertices.size(); ++v) {
-    const std::byte* const record = &block.attributes[v * record_size];
-    const int axis = check.bad_axis(record);
-    if (axis == 0) continue;
-    throw InvalidArgument(fmt::format("vertex {} has {}", vertices_ + v, check.text(axis, record)));
+  const std::size_t size = header_.attributes.record_size();
+  if (const auto bad = check.first_bad(block.attributes, size)) {
+    throw InvalidArgument(fmt::format("vertex {} has {}", vertices_ + *bad,
+                                      check.text(&block.attributes[*bad * size])));
   }
 }
 

@@ -89,7 +89,8 @@ std::vector<MeshStreamBlock> blocks_of(MeshStreamBlock whole, std::size_t corner
     blocks.push_back(std::move(whole));
     return blocks;
   }
-  const std::size_t size = std::clamp<std::size_t>(kLargestBlock / 8 / vertex, 1, kMostVertices);
+  const std::size_t size = std::clamp<std::size_t>(
+      kLargestBlock / 8 / std::max<std::size_t>(1, most / whole.vertices.size()), 1, kMostVertices);
   return divided(whole, corners, attributes.record_size(), size);
 }
 

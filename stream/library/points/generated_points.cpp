@@ -24,6 +24,7 @@ GeneratorOptions generator_options(const GenerateOptions& options) {
 
 GeneratedPoints::GeneratedPoints(const GenerateOptions& options)
     : count_(options.count),
+      dimension_(options.dimension),
       has_heights_(options.dimension >= 3 || always_has_heights(family_by_name(options.family))),
       attributes_(further_coordinates(options.dimension)),
       generator_(make_generator(generator_options(options))) {
@@ -72,6 +73,7 @@ bool GeneratedPoints::read(spillway::PointsBlock& block) {
 RunPoints GeneratedPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
   refuse_taken_points(std::exchange(is_taken_, true));
   return {.stream = this,
+          .dimension = attributes_.empty() ? 0 : dimension_,
           .has_heights = has_heights_,
           .attributes = attributes_,
           .offered = attributes_,

@@ -43,6 +43,7 @@ class GeneratedPoints final : public PointSource, public EnginePoints, private P
 
   bool is_taken_ = false;  ///< by a run
   std::uint64_t count_;
+  int dimension_;
   bool has_heights_;
   AttributeLayout attributes_;  ///< coordinates beyond z
   std::unique_ptr<PointGenerator> generator_;

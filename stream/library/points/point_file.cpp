@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "formats/gdal/gdal.h"
+#include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/create_points.h"
 #include "formats/points/las/records/las_metadata.h"
 #include "formats/points/point_formats.h"
@@ -180,7 +181,14 @@ void PointFile::start(const RunPoints& points, const WorkSharing& sharing) {
   if (points.stream != nullptr) source_ = points.stream->lattice();
   if (points.heights_on_lattice) how_.lattice = source_;
   if (format_.wants_wkt) how_.crs_wkt = wkt_of_code(how_.crs);
-  if (format_.holds_attributes) how_.attributes = chosen(points.attributes, wanted_attributes());
+  const int dimension = points.dimension;
+  if (format_.holds_attributes) {
+    how_.attributes = chosen_beside_coordinates(points.attributes, wanted_attributes(), dimension);
+  } else if (further_axes(dimension) > 0) {
+    throw InvalidArgument(fmt::format("{} holds no coordinates beyond z, and {} is {}",
+                                      format_.title, path_, format_.title),
+                          {.file = path_});
+  }
   check_attributes(points);
   if (format_.has_versions) {
     how_.las = las_metadata_of(points.headers);

@@ -42,6 +42,7 @@ RunPoints ProgramPoints::begin(RunWatch& /*watch*/, bool /*index*/) {
   for (int axis = kOwnAxes; axis < dimension_; ++axis) check_coordinate(axis);
   attributes_ = with_further_coordinates(told_, choice(), dimension_);
   return {.stream = this,
+          .dimension = further_axes(dimension_) > 0 ? dimension_ : 0,
           .has_heights = header_.coordinates == 3,
           .heights_on_lattice = heights_on_lattice_,
           .attributes = attributes_,
@@ -99,13 +100,10 @@ void ProgramPoints::decode(SourcePiece& piece, PointBlock& block) {
     block.points[i] = placed(block.points[i].numbers(), number);
     block.index[i] = number;
   }
-  if (further_axes(dimension_) == 0) return;
   const CoordinateCheck check(told_, dimension_);
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    const std::byte* const record = &block.attributes[i * block.record_size()];
-    const int axis = check.bad_axis(record);
-    if (axis == 0) continue;
-    throw InvalidArgument(fmt::format("point {} has {}", block.index[i], check.text(axis, record)));
+  if (const auto bad = check.first_bad(block.attributes, block.record_size())) {
+    throw InvalidArgument(fmt::format("point {} has {}", block.index[*bad],
+                                      check.text(&block.attributes[*bad * block.record_size()])));
   }
 }
 

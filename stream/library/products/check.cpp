@@ -33,15 +33,12 @@ class Comparison {
     auto* points = OwnParts::of(*source);
     if (points == nullptr) points = &program_points_.emplace(*source, dimension);
     const RunPoints run = points->begin(watch, true);
-    if (run.dimension != 0 && run.dimension != dimension) {
+    const bool is_higher = further_axes(dimension) > 0;
+    if (run.dimension != dimension && (run.dimension != 0 || is_higher)) {
       throw InvalidArgument(
           fmt::format("the points were opened for {} dimensions, and the mesh "
                       "has {}",
                       run.dimension, dimension));
-    }
-    if (!has_further_coordinates(run.attributes, dimension)) {
-      throw InvalidArgument(
-          fmt::format("the points have x, y and z, and the mesh {} dimensions", dimension));
     }
     input_ = run.stream;
     how.input_lattice = input_->lattice();

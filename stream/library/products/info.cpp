@@ -102,7 +102,7 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     further.add(std::span(mesh.attributes).subspan(v * mesh.header.attributes.record_size()));
   }
-  info.further_extent = further.ranges();
+  if (info.extent) info.further_extent = further.ranges();
   info.lattice = lattice_info(mesh.header.lattice);
   info.crs = mesh.header.crs;
   info.attributes = mesh.header.attributes.attributes();
@@ -136,7 +136,7 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   info.totals.hull_facets = found.hull_facets;
   info.totals.canonical_hash = found.canonical_hash;
   info.extent = extent_of(box);
-  info.further_extent = further_box.ranges();
+  if (info.extent) info.further_extent = further_box.ranges();
   info.lattice = lattice_info(reader.header().lattice);
   info.crs = reader.header().crs;
   info.attributes = reader.header().attributes.attributes();

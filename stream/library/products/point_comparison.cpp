@@ -96,7 +96,7 @@ class TreeComparison {
 
   /// The number of distinct points of the input.
   std::uint64_t run() {
-    const auto root = tree_.take_nodes<D>();
+    const auto root = tree_.take_nodes<D>(whole_space<D>());
     return root ? compare(*root) : 0;
   }
 

@@ -1,5 +1,5 @@
-// Points and meshes of four to six dimensions through the door for programs: coordinates beyond z go
-// in and out as attributes.
+// Points and meshes of four to six dimensions through the door for programs: coordinates beyond z
+// go in and out as attributes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -194,6 +195,34 @@ TEST_F(HigherDimensionsOfStreams, OfMeshesOfAProgramAreWritten) {
   EXPECT_EQ(check(*mesh, {}, *context_).fault_count, 0U);
 }
 
+TEST_F(HigherDimensionsOfStreams, GoBeforeTheAttributesThatAFileKeeps) {
+  const auto points = random_points<4>(40);
+  AttributeColumns given({{.name = "w"}, {.name = "v"}}, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) given.values<double>("v")[i] = 0.5 * points[i][3];
+  const auto source = points_in_memory(PointView<4>(points), given);
+  const auto sink = create_points(file("a.spp"), {.attributes = {{"v"}}}, *context_);
+  convert(*source, *sink, *context_);
+  const auto again =
+      open_points({file("a.spp")}, {.dimension = 0, .attributes = {"all"}}, *context_);
+  PointsBlock block;
+  ASSERT_TRUE(again->read(block));
+  ASSERT_EQ(block.attributes.attributes().size(), 2U);
+  for (std::size_t i = 0; i < block.points.size(); ++i) {
+    EXPECT_EQ(block.attributes.values<double>("x4")[i], points[i][3]);
+    EXPECT_EQ(block.attributes.values<double>("v")[i], 0.5 * points[i][3]);
+  }
+}
+
+TEST_F(HigherDimensionsOfStreams, OfMeshesAreKeptByWhoWantsNoAttributes) {
+  const auto points = random_points<4>(60);
+  const auto source = points_in_memory(PointView<4>(points));
+  const auto file_of_mesh = create_mesh(file("a.spm"), {}, *context_);
+  triangulate(*source, *file_of_mesh, {.dimension = 4}, *context_);
+  MeshInMemory mesh;
+  convert(*open_mesh(file("a.spm"), {}, *context_), mesh, *context_);
+  EXPECT_EQ(simplices_of<4>(mesh), simplices_in_memory<4>(points));
+}
+
 TEST_F(HigherDimensionsOfStreams, ThatDoNotFitTheCallAreErrors) {
   const auto points = random_points<4>(50);
   MeshInMemory mesh;
@@ -213,6 +242,17 @@ TEST_F(HigherDimensionsOfStreams, ThatDoNotFitTheCallAreErrors) {
                             *context_);
               }),
               "there are 2 to 6 dimensions, not 7");
+  AttributeColumns weight({{.name = "weight"}}, in_space.size());
+  MeshInMemory weighed({"weight"});
+  EXPECT_THAT(message_of([&] {
+                triangulate(*points_in_memory(PointView<3>(in_space), weight), weighed,
+                            {.dimension = 4}, *context_);
+              }),
+              "the points have x, y and z, but are to be triangulated in 4 dimensions");
+  std::ofstream(file("in.csv")) << "x,y,z,x4\n1,2,3,4\n";
+  const auto not_for_four = open_points({file("in.csv")}, {.dimension = 0}, *context_);
+  EXPECT_THAT(message_of([&] { triangulate(*not_for_four, mesh, {.dimension = 4}, *context_); }),
+              HasSubstr("open them for 4 dimensions"));
   auto bad = points;
   bad[9][3] = std::numeric_limits<double>::infinity();
   EXPECT_THAT(message_of([&] {
@@ -224,6 +264,13 @@ TEST_F(HigherDimensionsOfStreams, ThatDoNotFitTheCallAreErrors) {
   EXPECT_THAT(message_of([&] { points_in_memory(PointView<4>(points), taken); }),
               HasSubstr("an attribute is called x4, as a coordinate of the points is"));
   triangulate(*points_in_memory(PointView<4>(points)), mesh, {.dimension = 4}, *context_);
+  const auto of_four = create_mesh(file("four.spm"), {}, *context_);
+  triangulate(*points_in_memory(PointView<4>(points)), *of_four, {.dimension = 4}, *context_);
+  const auto others = generate_points({.family = "uniform", .count = 50, .dimension = 5});
+  EXPECT_THAT(message_of([&] {
+                check(*open_mesh(file("four.spm"), {}, *context_), {}, *context_, others.get());
+              }),
+              HasSubstr("opened for 5 dimensions"));
   EXPECT_THAT(message_of([&] { static_cast<void>(mesh.coordinates<5>()); }),
               "a mesh of 4 dimensions has no coordinate 5");
   PointOptions thin;

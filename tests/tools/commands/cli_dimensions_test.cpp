@@ -141,6 +141,45 @@ TEST_F(HigherDimensions, KeepOtherAttributesAndIndicesOfPoints) {
   EXPECT_EQ(work_.info("back.spm")["attributes"].size(), 2U);
 }
 
+TEST_F(HigherDimensions, StayWhereOtherAttributesAreLeftOut) {
+  auto points = curve_points(30);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(static_cast<int>(100 + i));
+  work_.write("in.npy", npy("'<f8'", "30, 5", columns_of<double>(points)));
+  const std::string hash = hash_of("in.npy", "--attributes column_5");
+  for (const char* attributes : {"none", "column_5", "all"}) {
+    for (const char* file : {"out.spm", "out.npy"}) {
+      work_.succeed(fmt::format("rm -f out*\nspillway convert -q m.spm -o {} --attributes {}", file,
+                                attributes));
+      EXPECT_EQ(work_.info(file)["canonical_hash"], hash) << file << " " << attributes;
+      EXPECT_EQ(work_.info(file)["attributes"].size(), std::string(attributes) == "none" ? 1U : 2U);
+    }
+  }
+}
+
+TEST_F(HigherDimensions, OfInputsThatNameThemDifferentlyAreOneSet) {
+  work_.succeed(
+      "spillway generate -q uniform -n 200 --dim 4 -o a.spp\n"
+      "spillway generate -q uniform -n 200 --dim 4 --seed 2 -o b.npy\n"
+      "spillway convert -q b.npy -o b.spp --attributes all\n"
+      "spillway generate -q uniform -n 200 --dim 4 --seed 2 -o b4.spp");
+  const std::string hash = hash_of("a.spp b4.spp");
+  EXPECT_EQ(hash_of("a.spp b.npy"), hash);
+  EXPECT_EQ(hash_of("b.npy a.spp", "--attributes all"), hash);
+  EXPECT_EQ(work_.info("m.spm")["attributes"].size(), 1U);
+  work_.succeed("spillway check -q m.spm --points a.spp b.npy");
+}
+
+TEST_F(HigherDimensions, GoToEveryFormatOfPointsThatHoldsThem) {
+  work_.succeed("spillway generate -q uniform -n 50 --dim 5 -o a.spp");
+  const std::string info = "spillway triangulate -q --dim 5 {} -o {}.spm";
+  work_.succeed(fmt::format(fmt::runtime(info), "a.spp", "a"));
+  for (const char* file : {"b.csv", "b.xyz", "b.ply", "b.npy"}) {
+    work_.succeed(fmt::format("spillway generate -q uniform -n 50 --dim 5 -o {}", file));
+    work_.succeed(fmt::format(fmt::runtime(info), file, "b"));
+    EXPECT_EQ(work_.info("b.spm")["canonical_hash"], work_.info("a.spm")["canonical_hash"]) << file;
+  }
+}
+
 TEST_F(HigherDimensions, OfAllFamiliesAreMade) {
   for (const char* family : {"uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice",
                              "circle", "clusters", "duplicates", "utm"}) {

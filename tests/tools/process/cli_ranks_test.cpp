@@ -102,6 +102,18 @@ TEST_F(RanksOfTheCommand, MakeTheSameMeshInHigherDimensions) {
         expect_same_mesh(count, fmt::format("--dim {} in.npy --memory 1G", dimension));
         work_.succeed("spillway check -q b.spm --points in.npy");
       }
+      // Each part tells the facets that it has alone, as its simplices show.
+      work_.succeed(ranks(2, fmt::format("triangulate -q --dim {} in.npy --memory 1G --parts "
+                                         "-o part.spm",
+                                         dimension)));
+      std::uint64_t simplices = 0;
+      for (const char* part : {"part.0.spm", "part.1.spm"}) {
+        const auto info = work_.info(part);
+        simplices += info.at("simplices").get<std::uint64_t>();
+        work_.succeed(fmt::format("spillway convert -q {} -o same.npy", part));
+        EXPECT_EQ(work_.info("same.npy").at("hull_facets"), info.at("hull_facets")) << part;
+      }
+      EXPECT_EQ(work_.info("b.spm").at("simplices"), simplices);
     }
   }
 }

@@ -39,7 +39,7 @@ CheckReport compare(const Points& vertices, const Points& input, int dimension) 
   file.close();
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   PointComparison comparison(dimension, 1 << 18, *scratch);
-  for (const Point<3>& vertex : vertices) comparison.add_vertex(WorldPoint(vertex));
+  for (const Point<3>& vertex : vertices) comparison.add_vertex(WorldPoint(vertex), {});
   JoinedInputs source(disk(), {path}, {.dimension = dimension, .index = true});
   CheckReport report;
   const Context silent;
