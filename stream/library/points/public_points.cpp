@@ -27,7 +27,7 @@ std::vector<LatticePoint> points_without_lattice(std::span<const Point<3>> point
 
 template <int D>
 const Point<D>& finite_point(const Point<D>& point, std::uint64_t number) {
-  if (std::ranges::all_of(point, [](double number) { return std::isfinite(number); })) return point;
+  if (std::ranges::all_of(point, [](double x) { return std::isfinite(x); })) return point;
   throw InvalidArgument(fmt::format("point {} has a coordinate that is not finite: ({})", number,
                                     fmt::join(point, ", ")));
 }
