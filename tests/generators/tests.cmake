@@ -4,6 +4,7 @@ spillway_test(generators_test unit
     generators/degenerate_test.cpp
     generators/direction_test.cpp
     generators/every_family_test.cpp
+    generators/higher_dimensions_test.cpp
     generators/packing_test.cpp
     generators/scan_test.cpp
     generators/survey_grid_test.cpp

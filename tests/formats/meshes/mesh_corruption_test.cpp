@@ -402,11 +402,16 @@ TEST(NpyMeshCorruption, CountLargerThanFile) {
 
 TEST(NpyMeshCorruption, WrongShape) {
   NpyFiles npy;
-  npy.vertices = replaced(npy.vertices, "(4, 3)", "(3, 4)");
-  EXPECT_THAT(npy.error(), HasSubstr("n x 2 or n x 3"));
+  npy.vertices = replaced(npy.vertices, "(4, 3)", "(12,1)");
+  EXPECT_THAT(npy.error(), HasSubstr("n x 2 to n x 6"));
+  NpyFiles of_four;
+  of_four.vertices = replaced(of_four.vertices, "(4, 3)", "(3, 4)");
+  EXPECT_THAT(of_four.error(),
+              HasSubstr("these are triangles, but the vertices have 4 coordinates; "
+                        "save them as n x 3"));
   NpyFiles other;
   other.simplices = replaced(other.simplices, "(2, 3)", "(3, 2)");
-  EXPECT_THAT(other.error(), HasSubstr("n x 3 or n x 4"));
+  EXPECT_THAT(other.error(), HasSubstr("n x 3 to n x 7"));
 }
 
 TEST(NpyMeshCorruption, WrongType) {

@@ -417,7 +417,7 @@ TEST(Checker3DTest, OneOfTheThreeCutsOfAnOctahedronIsCanonical) {
 
 TEST(CheckerDimensionTest, OtherDimensionsAreRefused) {
   Mesh mesh;
-  mesh.header.dimension = 4;
+  mesh.header.dimension = 7;
   EXPECT_THROW(check_mesh(mesh, {}), Failure);
   EXPECT_THROW(canonical_hash(mesh), Failure);
 }

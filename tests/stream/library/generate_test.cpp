@@ -44,7 +44,7 @@ TEST_F(Generated, IntegersAreTriangulatedAsSuch) {
 
 TEST_F(Generated, PointsThatAreNoneAreRefused) {
   EXPECT_EQ(code_of([] { generate_points({.family = "clouds"}); }), ErrorCode::kInvalidArgument);
-  EXPECT_EQ(code_of([] { generate_points({.dimension = 4}); }), ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([] { generate_points({.dimension = 7}); }), ErrorCode::kInvalidArgument);
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ TEST_F(HigherDimensions, OfAllFamiliesAreMade) {
                       "cmp in.npy same.npy",
                       family, dimension));
       EXPECT_EQ(work_.info("in.spp")["attributes"].size(), dimension - 3U);
-      if (std::string("duplicates") == family) continue;  // of too few places
+      if (dimension > 4 || std::string("duplicates") == family) continue;  // of too few places
       work_.succeed(fmt::format("spillway triangulate -q --dim {} in.spp -o a.spm", dimension));
     }
   }

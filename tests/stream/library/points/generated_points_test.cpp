@@ -108,7 +108,7 @@ TEST(GeneratedPoints, AreTakenByOneRun) {
 
 TEST(GeneratedPoints, RefuseOptionsThatCannotBe) {
   for (const GenerateOptions& wrong : std::vector<GenerateOptions>{
-           {.family = "no such family"}, {.dimension = 1}, {.dimension = 4}}) {
+           {.family = "no such family"}, {.dimension = 1}, {.dimension = 7}}) {
     const auto error = thrown_by([&] { const GeneratedPoints points(wrong); });
     ASSERT_TRUE(error);
     EXPECT_EQ(error->code(), ErrorCode::kInvalidArgument);
