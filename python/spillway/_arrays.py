@@ -49,13 +49,12 @@ def as_floats(numbers: Any, name: str) -> Floats:
     return array.astype(np.float64)
 
 
-def as_rows(points: Any, name: str, most: int = 3) -> Floats:
-    """Coordinates as rows of two to `most`."""
+def as_rows(points: Any, name: str) -> Floats:
+    """Coordinates as rows of two to six."""
     array = as_floats(points, name)
-    if array.ndim != 2 or not 2 <= array.shape[1] <= most:
-        numbers = "2 or 3" if most == 3 else f"2 to {most}"
+    if array.ndim != 2 or not is_dimension(array.shape[1]):
         raise InvalidArgumentError(
-            f"{name} has the shape {array.shape}; give rows of {numbers} coordinates, as (n, 2)"
+            f"{name} has the shape {array.shape}; give rows of 2 to 6 coordinates, as (n, 2)"
         )
     return array
 
@@ -116,7 +115,7 @@ def _as_attribute(values: Any, name: str, count: int) -> NDArray[Any]:
 
 def as_points(points: Any, dim: int | None) -> tuple[Floats, Floats | None]:
     """Coordinates as rows of two to six, and the heights that points in the plane carry."""
-    array = as_rows(points, "points", 6)
+    array = as_rows(points, "points")
     if dim is not None and not is_dimension(dim):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2 to 6 or None")
     columns = array.shape[1]

@@ -43,7 +43,7 @@ def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
             raise TypeError(
                 f"{name} is of type {type(inputs).__name__}; give paths in a list, or an array"
             )
-    return as_rows(inputs, name, 6)
+    return as_rows(inputs, name)
 
 
 def as_dimension(dim: Any, inputs: list[bytes] | Floats, most: int = 6) -> int:

@@ -517,7 +517,8 @@ class Errors(InFolder):
     def test_wrong_inputs(self):
         for words, inputs in [
             (r"shape \(4,\)", np.zeros(4)),
-            (r"shape \(5, 4\)", np.zeros((5, 4))),
+            (r"shape \(5, 7\)", np.zeros((5, 7))),
+            ("dim is 2, but inputs has 4 columns", np.zeros((5, 4))),
             ("is empty; give paths", []),
             ("is of type NoneType", None),
             ("elements of type complex128", np.zeros((5, 2), complex)),
