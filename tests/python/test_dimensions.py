@@ -26,7 +26,7 @@ class HigherDimensionsOfStreams(unittest.TestCase):
                 self.assertEqual(report.canonical_hash, again.canonical_hash)
                 self.assertEqual(report.simplices, spillway.Delaunay(points).nsimplex)
                 self.assertIn("simplices", repr(report))
-                self.assertTrue(spillway.check(mesh, points).proved)
+                self.assertTrue(spillway.check(mesh, points=points).proved)
                 low, high = spillway.info(mesh).extent
                 np.testing.assert_array_equal(low, points.min(axis=0))
                 np.testing.assert_array_equal(high, points.max(axis=0))
