@@ -87,29 +87,31 @@ class BoundaryProof {
                       mesh_.vertex_text(vertex), facet_text(first));
         }
       }
-      if (coplanar && !apart(first, facet) && !apart(facet, first)) {
+      if (coplanar && covers_first(facet)) {
         faults_.add("the boundary covers itself: {} overlaps {}", facet_text(facet),
                     facet_text(first));
       }
     }
   }
 
-  // Whether one of a's ridges has all of b on its outer side, both being in one hyperplane. A point
-  // is on the outer side of the i-th ridge if putting it in place of a's i-th vertex turns or
-  // flattens the simplex that a forms with a point off the hyperplane.
-  bool apart(const BoundaryFacet<D>& a, const BoundaryFacet<D>& b) const {
-    const std::uint64_t off = apex_of(a);
-    const int inner = orientation<D>(mesh_.simplex(a.vertices, off));
+  // Whether a facet in the plane of the first one covers it next to its first vertex: at v0 +
+  // e1 (v1 - v0) + e2 (v2 - v0) + ..., where each e is tiny beside the one before. On which side of
+  // a ridge that point is, the first vertex tells that is not on the ridge itself. A point is on
+  // the inner side of the i-th ridge if putting it in place of the facet's i-th vertex keeps the
+  // orientation of the simplex that the facet forms with a point off the plane.
+  bool covers_first(const BoundaryFacet<D>& facet) const {
+    const std::uint64_t off = apex_of(facet);
+    const int inner = orientation<D>(mesh_.simplex(facet.vertices, off));
     for (int i = 0; i < D; ++i) {
-      const bool all_outside =
-          std::all_of(b.vertices.begin(), b.vertices.end(), [&](std::uint64_t vertex) {
-            auto replaced = a.vertices;
-            replaced[i] = vertex;
-            return orientation<D>(mesh_.simplex(replaced, off)) * inner <= 0;
-          });
-      if (all_outside) return true;
+      int side = 0;
+      for (int v = 0; v < D && side == 0; ++v) {
+        auto replaced = facet.vertices;
+        replaced[i] = boundary_[0].vertices[v];
+        side = orientation<D>(mesh_.simplex(replaced, off)) * inner;
+      }
+      if (side < 0) return false;
     }
-    return false;
+    return true;
   }
 
   // The vertex of the facet's simplex that the facet does not have.

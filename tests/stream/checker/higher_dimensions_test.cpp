@@ -75,6 +75,35 @@ TEST_P(ProofOfHigherDimension, HoldsOfEveryFamily) {
   });
 }
 
+/// Then many boundary facets lie in one hyperplane, side by side in all ways that simplices can.
+TEST_P(ProofOfHigherDimension, HoldsWhereAllPointsAreOnTheSidesOfABox) {
+  for_dimension([](auto d) {
+    for (const std::uint64_t seed : {1, 2, 3, 4}) {
+      auto points = generated_points<d>({.count = d == 4 ? 60U : 35U, .seed = seed});
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        for (int k = 0; k < 3; ++k) points[i][k] = (i >> k) % 2 == 0 ? 0 : 1;
+      }
+      const CheckReport report = proof_of(mesh_of<d>(points));
+      EXPECT_EQ(report.fault_count, 0U) << report.faults.front();
+    }
+  });
+}
+
+/// A sphere that covers itself: each facet comes twice, by simplices of their own vertices.
+TEST_P(ProofOfHigherDimension, FindsABoundaryThatCoversItself) {
+  for_dimension([](auto d) {
+    Mesh mesh = mesh_of<d>(generated_points<d>({.count = d + 3U}));
+    const Mesh once = mesh;
+    mesh.vertices.insert(mesh.vertices.end(), once.vertices.begin(), once.vertices.end());
+    mesh.attributes.insert(mesh.attributes.end(), once.attributes.begin(), once.attributes.end());
+    for (const std::uint64_t c : once.corners) mesh.corners.push_back(c + once.vertices.size());
+    StreamInMemory stream = stream_of(mesh, 50);
+    stream.with_hash = false;
+    EXPECT_THAT(check_mesh_stream(stream, {}).faults,
+                Contains(HasSubstr("the boundary covers itself")));
+  });
+}
+
 TEST_P(ProofOfHigherDimension, FindsAMissingSimplex) {
   for_dimension([](auto d) {
     Mesh mesh = mesh_of<d>(generated_points<d>({.count = some_points()}));
