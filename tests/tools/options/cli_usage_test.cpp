@@ -185,7 +185,7 @@ INSTANTIATE_TEST_SUITE_P(
     Cli, WrongCommandLine,
     ::testing::Values(
         "frobnicate", "triangulate", "triangulate in.txt", "triangulate -o x.ply",
-        "triangulate in.txt -o x.ply --frobnicate", "triangulate in.txt -o x.ply --dim 4",
+        "triangulate in.txt -o x.ply --frobnicate", "triangulate in.txt -o x.ply --dim 7",
         "triangulate in.txt -o x.nonsense", "triangulate in.txt -o x.ply --heights most",
         "triangulate in.txt -o x.ply --max-edge 0", "triangulate in.txt -o x.ply --threads -1",
         "triangulate in.txt -o x.ply --leaf-points -1", "triangulate in.txt -o x.ply --children 1",
@@ -341,7 +341,7 @@ TEST(Completion, BashCompletesSubcommandsOptionsAndValues) {
   };
   EXPECT_EQ(complete("spillway tri", 1), "triangulate\n");
   EXPECT_EQ(complete("spillway triangulate --hei", 2), "--heights\n");
-  EXPECT_EQ(complete("spillway triangulate --dim \"\"", 3), "2 3\n");
+  EXPECT_EQ(complete("spillway triangulate --dim \"\"", 3), "2 3 4 5 6\n");
   EXPECT_EQ(complete("spillway generate te", 2), "terrain\n");
   EXPECT_EQ(complete("spillway triangulate \"\"", 2), "\n");  // leaves files to the shell
 }

@@ -64,7 +64,7 @@ TEST_F(Limits, OfMemory) {
        {"triangulate -q in.las -o out/mesh.ply --threads 8 --memory 32M",
         "dem -q in.las -o out/dem.tif --resolution 5 --threads 4", "info -q in.las > /dev/null"}) {
     int failures = 0;
-    for (const int kibibytes : {22528, 26000, 34000, 38000, 40000, 41000, 42000, 43000, 49250,
+    for (const int kibibytes : {26000, 34000, 38000, 40000, 41000, 42000, 43000, 49250,
                                 56000, 80000, 100000, 200000, 600000, 2000000}) {
       const bool success =
           succeeds(fmt::format("ulimit -v {}; timeout 60", kibibytes), command + " " + arguments,
