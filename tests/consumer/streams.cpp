@@ -89,6 +89,22 @@ class Counter : public spillway::MeshSink {
   spillway::MeshTotals totals_;
 };
 
+// Points of four dimensions.
+void stream_four_dimensions() {
+  std::vector<spillway::Point<4>> samples;
+  for (int i = 0; i < 2'000; ++i) {
+    samples.push_back({std::sin(i), std::sin(2.1 * i), std::sin(3.3 * i), std::sin(5.7 * i)});
+  }
+  const spillway::Context large({.memory = "1G"});
+  const auto of_four = spillway::points_in_memory(spillway::PointView<4>(samples));
+  spillway::MeshInMemory simplices;
+  spillway::triangulate(*of_four, simplices, {.dimension = 4}, large);
+  const std::vector<spillway::Point<4>> vertices = simplices.coordinates<4>();
+
+  expect(vertices.size() == samples.size(), "all points are vertices");
+  expect(simplices.corners().size() > 5 * 20 * samples.size(), "they have many simplices");
+}
+
 // More points than memory: they wait in scratch files, and triangles come while they are made.
 void stream_more_than_memory(const Folder& folder) {
   const spillway::Context context({.memory = "32M", .threads = 2, .scratch_folder = folder.path()});
@@ -281,6 +297,7 @@ void use_streams() {
     const Folder folder;
     stream_more_than_memory(folder);
   }
+  stream_four_dimensions();
   const Folder folder;
   convert_ways(folder);
   carry_attributes(folder);

@@ -145,7 +145,7 @@ TEST_F(Batch, RefusesAListWithMistakesBeforeAnyWork) {
       error_of_list("e.json", R"({"jobs": [{"in": "in/north.las", "options": {"colour": 1}}]})"),
       HasSubstr("uses the option --colour"));
   EXPECT_THAT(
-      error_of_list("f.json", R"({"jobs": [{"in": "in/north.las", "options": {"dim": 5}}]})"),
+      error_of_list("f.json", R"({"jobs": [{"in": "in/north.las", "options": {"dim": 7}}]})"),
       HasSubstr("--dim"));
   EXPECT_THAT(error_of_list("g.json", R"({"jobs": [{"in": "a/x.las"}, {"in": "b/x.las"}]})"),
               HasSubstr("two jobs are called x, one of a/x.las and one of b/x.las"));
