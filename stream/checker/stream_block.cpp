@@ -67,7 +67,7 @@ void StreamBlock<D>::match_facets(const StreamCoordinates<D>& coordinates,
     std::copy_n(facet.vertices.begin() + 1, D - 1, link.rest.begin());
     std::uint32_t& head = heads_[facet.vertices[0]];
     std::uint32_t* at = &head;
-    while (*at != kNone && links_[*at].rest != link.rest) at = &links_[*at].next;
+    while (*at != kNone && !same_numbers(links_[*at].rest, link.rest)) at = &links_[*at].next;
     if (*at == kNone) {
       link.next = head;
       head = f;

@@ -39,6 +39,14 @@ struct SortedFacet {
   }
 };
 
+/// Whether both have the same numbers: without the call that std::array makes of ==.
+template <std::size_t K>
+bool same_numbers(const std::array<std::uint32_t, K>& a, const std::array<std::uint32_t, K>& b) {
+  std::uint32_t difference = 0;
+  for (std::size_t i = 0; i < K; ++i) difference |= a[i] ^ b[i];
+  return difference == 0;
+}
+
 /// What is to be done with a mesh stream.
 enum class StreamTask {
   kProve,  ///< prove that it is the Delaunay triangulation of its vertices

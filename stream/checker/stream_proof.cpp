@@ -25,7 +25,9 @@ struct UnpairedFacet {
   std::uint64_t positive : 1 = 0;  // whether the simplex is
 
   [[nodiscard]] bool empty() const { return simplex == kEmpty; }
-  [[nodiscard]] bool same_key(const UnpairedFacet& other) const { return facet == other.facet; }
+  [[nodiscard]] bool same_key(const UnpairedFacet& other) const {
+    return same_numbers(facet, other.facet);
+  }
   [[nodiscard]] std::uint64_t scattered() const {
     std::uint64_t key = std::uint64_t{facet[0]} << 32 | facet[1];
     for (int i = 2; i < D; ++i) key = scatter(key) + facet[i];
