@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -65,7 +64,7 @@ class SpmReader : public MeshStreamReader {
   void parse_header() {
     const std::uint32_t version = stream_.take_version();
     const auto dimension = stream_.take<std::uint32_t>();
-    header_.dimension = static_cast<int>(std::min<std::uint32_t>(dimension, 100));
+    header_.dimension = static_cast<int>(dimension);
     if (!is_dimension(header_.dimension)) stream_.fail("the dimension is none of 2 to 6");
     const auto flags = stream_.take<std::uint32_t>();
     constexpr std::uint32_t kKnown =

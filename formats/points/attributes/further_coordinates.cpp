@@ -65,6 +65,7 @@ AttributeLayout with_further_coordinates(const AttributeLayout& layout,
 
 AttributeLayout with_names_of(const AttributeLayout& source, const AttributeLayout& layout,
                               int dimension) {
+  if (further_axes(dimension) == 0) return layout;
   std::vector<Attribute> attributes = layout.attributes();
   for (int axis = kOwnAxes; axis < dimension; ++axis) {
     const AttributeField* const own = find_coordinate(source, axis);
@@ -94,6 +95,7 @@ bool has_further_coordinates(const AttributeLayout& layout, int dimension) {
 
 AttributeLayout chosen_beside_coordinates(const AttributeLayout& layout,
                                           const AttributeChoice& choice, int dimension) {
+  if (further_axes(dimension) == 0) return chosen(layout, choice);
   std::vector<Attribute> attributes = layout.attributes();
   attributes.resize(static_cast<std::size_t>(further_axes(dimension)));
   const AttributeLayout others = chosen(without_further_coordinates(layout, dimension), choice);
@@ -102,6 +104,7 @@ AttributeLayout chosen_beside_coordinates(const AttributeLayout& layout,
 }
 
 AttributeLayout without_further_coordinates(const AttributeLayout& layout, int dimension) {
+  if (further_axes(dimension) == 0) return layout;
   std::vector<Attribute> attributes = layout.attributes();
   attributes.erase(attributes.begin(), attributes.begin() + further_axes(dimension));
   return AttributeLayout(std::move(attributes));
