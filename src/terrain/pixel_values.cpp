@@ -50,21 +50,21 @@ TrianglePlane::TrianglePlane(const Triangle& canonical, const Point<2>& scale)
   highest_ = std::max({canonical[0][2], canonical[1][2], canonical[2][2]});
 }
 
-double TrianglePlane::at(PixelRelation relation, double x, double y) const {
+double TrianglePlane::at(TriangleRelation relation, double x, double y) const {
   switch (relation) {
-    case PixelRelation::kInside:
+    case TriangleRelation::kInside:
       return inside(x, y);
-    case PixelRelation::kEdge01:
+    case TriangleRelation::kEdge01:
       return on_edge(corners_[0], corners_[1], x, y);
-    case PixelRelation::kEdge02:
+    case TriangleRelation::kEdge02:
       return on_edge(corners_[0], corners_[2], x, y);
-    case PixelRelation::kEdge12:
+    case TriangleRelation::kEdge12:
       return on_edge(corners_[1], corners_[2], x, y);
-    case PixelRelation::kCorner0:
+    case TriangleRelation::kCorner0:
       return corners_[0][2];
-    case PixelRelation::kCorner1:
+    case TriangleRelation::kCorner1:
       return corners_[1][2];
-    case PixelRelation::kCorner2:
+    case TriangleRelation::kCorner2:
       return corners_[2][2];
   }
   return std::numeric_limits<double>::quiet_NaN();

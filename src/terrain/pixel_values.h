@@ -23,7 +23,7 @@ class TrianglePlane {
   }
 
   /// The height at a centre in this relation to the triangle.
-  [[nodiscard]] double at(PixelRelation relation, double x, double y) const;
+  [[nodiscard]] double at(TriangleRelation relation, double x, double y) const;
 
   /// In output units.
   [[nodiscard]] Gradient gradient() const {

@@ -3,41 +3,22 @@
 // which share an edge neither leave a pixel out nor disagree about it. docs/dem.md tells how.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "src/geometry/point.h"
 #include "src/terrain/pixel_centres.h"
+#include "src/terrain/triangle_location.h"
 
 namespace spillway::terrain {
-
-/// A triangle with heights; x and y in the coordinates of the pixel centres.
-using Triangle = std::array<Point<3>, 3>;
-
-/// The corners in lexicographic order: what is computed from them depends on nothing else.
-Triangle in_canonical_order(const Triangle& triangle);
-
-/// Where in a triangle a centre lies, its corners being in canonical order.
-enum class PixelRelation : std::uint8_t {
-  kInside,
-  kEdge01,
-  kEdge02,
-  kEdge12,
-  kCorner0,
-  kCorner1,
-  kCorner2,
-};
 
 /// Pixels of one row, from `begin` to before `end`.
 struct PixelRun {
   std::uint32_t row = 0;
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
-  PixelRelation relation = PixelRelation::kInside;
-  /// Whether the triangle owns these pixels. A centre inside a triangulation, on a common edge or
-  /// vertex too, has exactly one owner: the triangle that it lies in when moved east by nearly
-  /// nothing, and north by nearly nothing of that. One on the hull may have none.
+  TriangleRelation relation = TriangleRelation::kInside;
+  /// Whether the triangle owns these pixels (TriangleLocation).
   bool owned = true;
 };
 

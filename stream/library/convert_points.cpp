@@ -1,4 +1,4 @@
-#include <spillway/convert.h>
+#include "stream/library/convert_points.h"
 
 #include <functional>
 #include <optional>
@@ -24,8 +24,8 @@ namespace {
 constexpr std::size_t kSlots = 6;
 
 /// Gives all points to `write`, in order, decoding on all threads.
-void pass_on(PointStream& points, unsigned threads, RunWatch& watch,
-             const std::function<void(PointBlock&)>& write) {
+void read_all(PointStream& points, unsigned threads, RunWatch& watch,
+              const std::function<void(PointBlock&)>& write) {
   struct Slot {
     SourcePiece piece;
     PointBlock block;
@@ -45,7 +45,7 @@ void pass_on(PointStream& points, unsigned threads, RunWatch& watch,
 PointConversion to_file(const RunPoints& points, PointFile& file, unsigned threads,
                         RunWatch& watch) {
   file.start(points, {.at_once = threads, .run = share_out});
-  pass_on(*points.stream, threads, watch, [&](PointBlock& block) { file.append(block); });
+  read_all(*points.stream, threads, watch, [&](PointBlock& block) { file.append(block); });
   bool finishes = false;
   const auto finishing = [&](std::uint64_t done) {
     const std::uint64_t all = points.stream->points_read();
@@ -72,7 +72,7 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
   header.attributes = points.attributes.attributes();
   sink.begin(header);
   PointConversion done;
-  pass_on(*points.stream, threads, watch, [&](PointBlock& block) {
+  read_all(*points.stream, threads, watch, [&](PointBlock& block) {
     if (block.size() == 0) return;
     sink.write(public_points(lattice, block.points),
                columns_of(points.attributes, block.attributes));
@@ -83,6 +83,29 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
 }
 
 }  // namespace
+
+void prepare_for(spillway::PointSink& sink, EnginePoints& points) {
+  if (const auto* const file = OwnParts::of(sink)) {
+    points.settle_crs(file->crs_need());
+    points.carry(file->wanted_attributes());
+  } else {
+    points.carry(attribute_choice(sink.attributes_wanted()));
+  }
+}
+
+PointConversion pass_on(const RunPoints& points, const char* phase, spillway::PointSink& sink,
+                        const Context& context, RunWatch& watch) {
+  auto* const file = OwnParts::of(sink);
+  if (file != nullptr && file->sorted()) return sort_points(points, *file, context, watch);
+  watch.begin(phase, "points");
+  PointConversion done = file != nullptr ? to_file(points, *file, context.threads(), watch)
+                                         : to_program(points, sink, context.threads(), watch);
+  watch.end(points.stream->points_read());
+  done.points = points.stream->counts();
+  if (points.files != nullptr) done.skipped_files = points.files->skipped();
+  return done;
+}
+
 }  // namespace spillway::stream
 
 namespace spillway {
@@ -94,22 +117,8 @@ PointConversion convert(PointSource& source, PointSink& sink, const Context& con
   std::optional<ProgramPoints> program_points;
   auto* points = OwnParts::of(source);
   if (points == nullptr) points = &program_points.emplace(source, 0);
-  auto* const file = OwnParts::of(sink);
-  if (file != nullptr) {
-    points->settle_crs(file->crs_need());
-    points->carry(file->wanted_attributes());
-  } else {
-    points->carry(attribute_choice(sink.attributes_wanted()));
-  }
-  const RunPoints run = points->begin(watch, true);
-  if (file != nullptr && file->sorted()) return sort_points(run, *file, context, watch);
-  watch.begin(points->phase(), "points");
-  PointConversion done = file != nullptr ? to_file(run, *file, context.threads(), watch)
-                                         : to_program(run, sink, context.threads(), watch);
-  watch.end(run.stream->points_read());
-  done.points = run.stream->counts();
-  if (run.files != nullptr) done.skipped_files = run.files->skipped();
-  return done;
+  prepare_for(sink, *points);
+  return pass_on(points->begin(watch, true), points->phase(), sink, context, watch);
 }
 
 }  // namespace spillway

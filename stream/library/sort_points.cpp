@@ -12,6 +12,7 @@
 #include "stream/plan/memory_plan.h"
 #include "stream/source/joined_inputs.h"
 #include "stream/tiles/regions/region_plan.h"
+#include "stream/tiles/storage/stored_points.h"
 #include "stream/tiles/tile_tree.h"
 
 namespace spillway::stream {
@@ -42,20 +43,6 @@ std::size_t cell_capacity(const SortOptions& options, const MemoryPlan& plan,
   const std::uint64_t wanted =
       std::max(options.cell_points == 0 ? kCellPoints : options.cell_points, least);
   return static_cast<std::size_t>(std::min<std::uint64_t>(wanted, plan.tile_room));
-}
-
-/// Calls `take` for the points of a tile, some thousand at a time, in the order in which they came.
-void visit_points(StoredTile& stored, const std::function<void(const PointsView&)>& take) {
-  for (StoredTile::Segment& segment : stored.segments) {
-    PointBlock points;
-    for (const EncodedBlock& block : find_blocks(segment.bytes, segment.where)) {
-      decode_points(std::span<const std::byte>(segment.bytes).subspan(block.offset, block.size),
-                    segment.where, points);
-      take(PointsView::of(points));
-    }
-    segment.bytes = {};
-    segment.buffer.drain(take);
-  }
 }
 
 void append_leaves(const TileNode<3>& node, std::vector<const TileNode<3>*>& leaves) {
@@ -207,13 +194,13 @@ class Sorting : private DealingWatch {
       PointBlock& points = slots[slot].points;
       points.clear();
       if (stored.points > capacity_) return;  // equal points, which may be too many for the memory
-      visit_points(stored, [&](const PointsView& some) { some.append_to(points); });
+      drain_points(stored, [&](const PointsView& some) { some.append_to(points); });
     };
     const auto append = [&](std::size_t slot) {
       StoredTile& stored = slots[slot].stored;
       file_.append_placed(PointsView::of(slots[slot].points));
       if (stored.points > capacity_) {
-        visit_points(stored, [&](const PointsView& some) { file_.append_placed(some); });
+        drain_points(stored, [&](const PointsView& some) { file_.append_placed(some); });
       }
       written_ += stored.points;
       watch_.tell(written_, static_cast<double>(written_) / static_cast<double>(tree_.points()));

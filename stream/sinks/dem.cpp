@@ -284,7 +284,7 @@ void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work)
     if (run.owned) work.hand.decide(end - begin);
     for (std::size_t b = 0; b < options_.products.size(); ++b) {
       const DemProduct product = options_.products[b];
-      if (product == DemProduct::kHeight && run.relation == PixelRelation::kInside) {
+      if (product == DemProduct::kHeight && run.relation == TriangleRelation::kInside) {
         for (std::uint32_t c = begin; c < end; ++c) {
           set_pixel(pixels[c - begin], static_cast<float>(plane.inside(x[c], y)));
         }

@@ -33,8 +33,8 @@ Visits scan(const PixelGrid& grid, const std::vector<Triangle>& triangles) {
       for (std::uint32_t column = run.begin; column < run.end; ++column) {
         const std::size_t pixel = std::size_t{run.row} * grid.columns + column;
         EXPECT_EQ(relation[pixel], -1) << "a pixel comes twice";
-        relation[pixel] = run.relation == PixelRelation::kInside   ? 0
-                          : run.relation <= PixelRelation::kEdge12 ? 1
+        relation[pixel] = run.relation == TriangleRelation::kInside   ? 0
+                          : run.relation <= TriangleRelation::kEdge12 ? 1
                                                                    : 2;
         ++visits.touched[pixel];
         if (run.owned) ++visits.owners[pixel];

@@ -39,9 +39,9 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
   }
 }
 
-TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
-                                   MeshSink& sink, TriangulateOptions how, const Context& context,
-                                   std::optional<RunRecorder>* recorder) {
+TracedReport trace_run(const TriangulationOptions& options, TriangulateOptions how,
+                       const std::function<Report(const TriangulateOptions& how)>& run,
+                       std::optional<RunRecorder>* recorder) {
   std::optional<InterruptAdvice> advice;
   if (!how.resume_folder.empty()) {
     advice.emplace(
@@ -50,9 +50,18 @@ TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSou
   }
   const auto trace = std::make_shared<CommandTrace>(options.tasks_path, recorder);
   how.trace = trace;
-  TracedReport report{triangulate(points, sink, how, context)};
+  TracedReport report{run(how)};
   report.sums = trace->commit();
   return report;
+}
+
+TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
+                                   MeshSink& sink, TriangulateOptions how, const Context& context,
+                                   std::optional<RunRecorder>* recorder) {
+  return trace_run(
+      options, std::move(how),
+      [&](const TriangulateOptions& traced) { return triangulate(points, sink, traced, context); },
+      recorder);
 }
 
 RunFacts facts_of_run(const TriangulationOptions& options, const std::string& output,

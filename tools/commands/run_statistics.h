@@ -4,6 +4,7 @@
 #include <spillway/triangulate.h>
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,8 +22,13 @@ namespace spillway::command {
 void check_statistics_file(const TriangulationOptions& options, const std::string& output,
                            std::string_view product);
 
-/// triangulate() that also writes the file of --tasks, if it is asked for, and tells the recorder,
-/// if there is one, what the run does.
+/// A run that also writes the file of --tasks, if it is asked for, and tells the recorder, if there
+/// is one, what it does. `run` triangulates with the options that it is given.
+TracedReport trace_run(const TriangulationOptions& options, TriangulateOptions how,
+                       const std::function<Report(const TriangulateOptions& how)>& run,
+                       std::optional<RunRecorder>* recorder = nullptr);
+
+/// triangulate() as such a run.
 TracedReport triangulate_and_trace(const TriangulationOptions& options, PointSource& points,
                                    MeshSink& sink, TriangulateOptions how, const Context& context,
                                    std::optional<RunRecorder>* recorder = nullptr);

@@ -5,6 +5,7 @@
 #define SPILLWAY_SUBCOMMANDS(DO) \
   DO(triangulate)                \
   DO(dem)                        \
+  DO(height)                     \
   DO(contour)                    \
   DO(render)                     \
   DO(info)                       \

@@ -48,6 +48,10 @@ class PointFile final : public spillway::PointSink {
     return format_.wants_wkt ? CrsNeed::kCodes : CrsNeed::kNone;
   }
 
+  /// Whether the format holds attributes, and its title.
+  [[nodiscard]] bool holds_attributes() const { return format_.holds_attributes; }
+  [[nodiscard]] std::string_view title() const { return format_.title; }
+
   /// Which attributes are to come with points.
   [[nodiscard]] AttributeChoice wanted_attributes() const;
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "stream/source/point_stream.h"
+
+namespace spillway::stream {
+
+/// Points that are read twice. Those of files are read there again; those of pipes, of a program
+/// and those that were thinned are kept in a scratch file meanwhile. As its index each point has a
+/// number, which is the same both times: they ascend, with gaps where points are left out.
+class RepeatedPoints final : public PointStream {
+ public:
+  /// Both must outlive it. `can_read_again`: whether points.read_again() works.
+  RepeatedPoints(PointStream& points, bool can_read_again, ScratchFolder& scratch);
+
+  /// From now on the points come once more, when all have come.
+  void repeat();
+
+  /// More than the largest number, once all have come.
+  [[nodiscard]] std::uint64_t numbers() const { return numbers_; }
+  [[nodiscard]] std::uint64_t kept_bytes() const { return file_ ? file_->size() : 0; }
+
+  bool fetch(SourcePiece& piece) override;
+  void decode(SourcePiece& piece, PointBlock& block) override;
+
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override {
+    return points_.lattice();
+  }
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override {
+    return points_.expected();
+  }
+  [[nodiscard]] const std::optional<Box<3>>& extent() const override { return points_.extent(); }
+  [[nodiscard]] PointCounts counts() const override { return points_.counts(); }
+  [[nodiscard]] std::uint64_t points_read() const override;
+  [[nodiscard]] std::optional<double> fraction_read() const override;
+
+ private:
+  /// A block in the scratch file.
+  struct Kept {
+    std::uint64_t first = 0;  ///< number
+    std::uint64_t offset = 0;
+    std::uint64_t size = 0;
+  };
+
+  void keep(std::uint64_t first, const PointBlock& block);
+  [[nodiscard]] bool is_kept() const { return scratch_ != nullptr; }
+
+  PointStream& points_;
+  ScratchFolder* scratch_ = nullptr;  ///< null: they are read again
+  bool repeats_ = false;
+  std::uint64_t numbers_ = 0;
+  std::mutex mutex_;  ///< guards the next two while points come the first time
+  std::unique_ptr<ScratchFile> file_;
+  std::vector<Kept> kept_;
+  std::size_t next_ = 0;  ///< of kept_
+};
+
+}  // namespace spillway::stream

@@ -1,0 +1,327 @@
+#include <spillway/height.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/ground/ground_writer.h"
+#include "stream/ground/repeated_points.h"
+#include "stream/ground/waiting_points.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/convert_points.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/library/own_parts.h"
+#include "stream/library/points/point_file.h"
+#include "stream/library/points/program_points.h"
+#include "stream/library/products/heights_above_ground.h"
+#include "stream/source/joined_inputs.h"
+
+namespace spillway::stream {
+namespace {
+
+/// The part of the memory that is for points.
+constexpr std::uint64_t kPointShare = 2;
+
+void check(const HeightOptions& options, spillway::PointSink& sink) {
+  if (options.replace_z && !std::isfinite(options.nodata)) {
+    throw InvalidArgument("points without ground need a number as z: choose a value for no data");
+  }
+  if (std::isinf(options.nodata)) {
+    throw InvalidArgument("the value for no data is a number, or not a number, but not infinite");
+  }
+  if ((options.min_height && std::isnan(*options.min_height)) ||
+      (options.max_height && std::isnan(*options.max_height))) {
+    throw InvalidArgument("the least and the greatest height are numbers");
+  }
+  if (options.min_height && options.max_height && !(*options.min_height <= *options.max_height)) {
+    throw InvalidArgument(fmt::format("no height is {} at least and {} at most",
+                                      *options.min_height, *options.max_height));
+  }
+  const auto* const file = OwnParts::of(sink);
+  if (!options.replace_z && file != nullptr && !file->holds_attributes()) {
+    throw InvalidArgument(fmt::format(
+        "{} points have no attributes, so heights must take the place of z", file->title()));
+  }
+}
+
+/// The step of a lattice is divided by rounding: what is a whole number of them but for that is one.
+double on_lattice(const IntegerLattice& lattice, int axis, double world) {
+  constexpr double kRoundingSteps = 1e-6;
+  const double steps = (world - lattice.offset[axis]) / lattice.scale[axis];
+  const double whole = std::nearbyint(steps);
+  return std::abs(steps - whole) <= kRoundingSteps ? whole : steps;
+}
+
+/// Points in the coordinates of the triangles, without what they carry.
+class PlacedOverGround final : public PointFeed {
+ public:
+  PlacedOverGround(RepeatedPoints& points, const std::optional<IntegerLattice>& ground,
+                   RunWatch& watch)
+      : points_(points), ground_(ground), watch_(watch) {}
+
+  bool fetch(SourcePiece& piece) override {
+    watch_.tell(points_.points_read(), points_.fraction_read());
+    return points_.fetch(piece);
+  }
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    points_.decode(piece, block);
+    block.attributes.clear();
+    for (LatticePoint& point : block.points) point = placed(point);
+  }
+
+  [[nodiscard]] std::optional<Box<3>> extent() const {
+    const std::optional<Box<3>>& extent = points_.extent();
+    if (!extent) return std::nullopt;
+    Box<3> box;
+    box.expand(placed(LatticePoint(extent->lo)).numbers());
+    box.expand(placed(LatticePoint(extent->hi)).numbers());
+    return box;
+  }
+
+ private:
+  [[nodiscard]] LatticePoint placed(const LatticePoint& point) const {
+    if (points_.lattice() == ground_) return {point[0], point[1], 0};
+    const WorldPoint world = in_world(points_.lattice(), point);
+    if (!ground_) return {world[0], world[1], 0};
+    return {on_lattice(*ground_, 0, world[0]), on_lattice(*ground_, 1, world[1]), 0};
+  }
+
+  RepeatedPoints& points_;
+  const std::optional<IntegerLattice> ground_;
+  RunWatch& watch_;
+};
+
+/// Takes the ground's triangles, and gives points with heights to a sink when all have come.
+class HeightSink final : public OwnSink<spillway::MeshSink> {
+ public:
+  /// All must outlive it.
+  HeightSink(EnginePoints& points, spillway::PointSink& sink, const HeightOptions& options,
+             const Context& context, RunWatch& watch)
+      : OwnSink(context),
+        points_(points),
+        sink_(sink),
+        options_(options),
+        watch_(watch),
+        scratch_(context.state().scratch(context)) {}
+
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override {
+    return limit / kPointShare;
+  }
+  [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
+  void identify(RunIdentity& identity) const override { identify_product("heights", "", identity); }
+
+  BlockSink* begin_again() override {
+    repeated_->repeat();
+    return &deal();
+  }
+
+  void finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) override {
+    writer_->finish(report.mesh);
+    watch.begin("locate", "points");
+    const auto all = static_cast<double>(waiting_->points());
+    with_threads(context().threads(), [&] {
+      waiting_->finish(
+          [&](std::uint64_t points) { watch.tell(points, static_cast<double>(points) / all); });
+    });
+    watch.end(waiting_->points());
+    repeated_->repeat();
+    HeightsAboveGround heights(run_, *repeated_, waiting_->heights(), options_);
+    PointConversion passed = pass_on(heights.run(), "write", sink_, context(), watch);
+    if (run_.files != nullptr) passed.skipped_files = run_.files->skipped();
+    report_ = heights.report();
+    report_.points = std::move(passed);
+    report_.spilled_bytes = waiting_->spilled_bytes() + repeated_->kept_bytes();
+  }
+
+  /// When all is done; but for what is about the ground.
+  [[nodiscard]] const HeightReport& report() const { return report_; }
+
+ private:
+  BlockSink& open(const MeshStart& start) override {
+    refuse_tetrahedra(start);
+    refuse_without_heights(start);
+    lattice_ = start.header.lattice;
+    run_ = points_.begin(watch_, false);
+    if (!run_.has_heights) {
+      throw Failure(run_.name.empty() ? "the points have no z" : run_.name + ": points have no z",
+                    ErrorCode::kDegenerateInput);
+    }
+    check_crs(start);
+    const bool can_read_again =
+        run_.files != nullptr && run_.files->any_order() && !run_.files->thins();
+    repeated_.emplace(*run_.stream, can_read_again, *scratch_);
+    return deal();
+  }
+
+  void check_crs(const MeshStart& start) const {
+    const std::string& ground = start.header.crs;
+    if (options_.foreign_crs || run_.crs.empty() || ground.empty() || run_.crs == ground ||
+        gdal().same_crs(run_.crs, ground)) {
+      return;
+    }
+    throw Failure(
+        fmt::format("{} is in {}, but the ground, {}, in {}; reproject one of them, or take "
+                    "coordinates as they are",
+                    run_.name, gdal().crs_name(run_.crs), start.name, gdal().crs_name(ground)),
+        ErrorCode::kBadInput, {.file = run_.name, .remedy = Remedy::kForeignCrs});
+  }
+
+  BlockSink& deal() {
+    PlacedOverGround placed(*repeated_, lattice_, watch_);
+    writer_.reset();
+    waiting_.emplace(WaitingPointsOptions{.memory = own_memory(context().memory()),
+                                          .whole = context().memory(),
+                                          .threads = context().threads(),
+                                          .expected = repeated_->expected(),
+                                          .extent = placed.extent()},
+                     *scratch_);
+    watch_.begin("deal", "points");
+    with_threads(context().threads(),
+                 [&] { waiting_->deal(placed, [&] { return repeated_->numbers(); }); });
+    watch_.end(waiting_->points());
+    return writer_.emplace(lattice_, *waiting_);
+  }
+
+  EnginePoints& points_;
+  spillway::PointSink& sink_;
+  const HeightOptions& options_;
+  RunWatch& watch_;
+  std::shared_ptr<ScratchFolder> scratch_;
+  RunPoints run_;
+  std::optional<IntegerLattice> lattice_;  ///< of the ground
+  std::optional<RepeatedPoints> repeated_;
+  std::optional<WaitingPoints> waiting_;
+  std::optional<GroundWriter> writer_;
+  HeightReport report_;
+};
+
+/// Points that can be read only once, in a file that can be read again, for as long as it lives.
+class CopiedPoints {
+ public:
+  CopiedPoints(const std::vector<std::string>& paths, const PointOptions& options,
+               const Context& context)
+      : scratch_(context.state().scratch(context)), beside_(scratch_->create("input")) {
+    path_ = std::filesystem::path(beside_->name()).replace_filename("input.spp").string();
+    PointOptions all;
+    all.dimension = 0;
+    all.format = options.format;
+    all.columns = options.columns;
+    all.skip_invalid = options.skip_invalid;
+    all.keep_withheld = true;
+    all.crs = options.crs;
+    all.foreign_crs = options.foreign_crs;
+    all.salvage = options.salvage;
+    all.skip_broken = options.skip_broken;
+    const auto source = open_points(paths, all, context);
+    const auto copy = create_points(path_, {}, context);
+    done_ = convert(*source, *copy, context);
+  }
+  ~CopiedPoints() { std::filesystem::remove(path_, ignored_); }
+  CopiedPoints(const CopiedPoints&) = delete;
+  CopiedPoints& operator=(const CopiedPoints&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// What became of all points.
+  [[nodiscard]] const PointConversion& copied() const { return done_; }
+
+ private:
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<ScratchFile> beside_;  ///< which the folder is there for
+  std::string path_;
+  PointConversion done_;
+  std::error_code ignored_;
+};
+
+/// Options of the ground among points: it is there whatever is wanted of the others.
+PointOptions ground_options(const PointOptions& points, const std::vector<int>& classes) {
+  PointOptions ground = points;
+  ground.dimension = 2;
+  ground.classes = classes;
+  ground.other_classes.clear();
+  ground.every = 1;
+  ground.returns.reset();
+  ground.where.clear();
+  ground.bounds.reset();
+  ground.thin.reset();
+  ground.resolution = 0;
+  ground.metadata = false;
+  ground.attributes.clear();
+  return ground;
+}
+
+/// `send` gives the ground to a sink.
+HeightReport measure(PointSource& source, spillway::PointSink& sink, const HeightOptions& options,
+                     const Context& context,
+                     const std::function<Report(spillway::MeshSink& ground)>& send) {
+  check(options, sink);
+  if (context.options().executor != nullptr) {
+    throw InvalidArgument("heights are measured by one process, not by several");
+  }
+  RunWatch watch(context);
+  watch.check();
+  std::optional<ProgramPoints> program_points;
+  auto* points = OwnParts::of(source);
+  if (points == nullptr) points = &program_points.emplace(source, 0);
+  prepare_for(sink, *points);
+  HeightSink heights(*points, sink, options, context, watch);
+  const Report ground = send(heights);
+  HeightReport report = heights.report();
+  report.ground = ground;
+  return report;
+}
+
+}  // namespace
+}  // namespace spillway::stream
+
+namespace spillway {
+
+HeightReport measure_heights(PointSource& points, PointSource& ground, PointSink& sink,
+                             const HeightOptions& options, const TriangulateOptions& how,
+                             const Context& context) {
+  return stream::measure(points, sink, options, context, [&](MeshSink& heights) {
+    return triangulate(ground, heights, how, context);
+  });
+}
+
+HeightReport measure_heights(PointSource& points, MeshSource& ground, PointSink& sink,
+                             const HeightOptions& options, const Context& context) {
+  return stream::measure(points, sink, options, context,
+                         [&](MeshSink& heights) { return convert(ground, heights, context); });
+}
+
+HeightReport measure_heights(const std::vector<std::string>& paths, const PointOptions& points,
+                             const std::vector<int>& ground_classes, PointSink& sink,
+                             const HeightOptions& options, const TriangulateOptions& how,
+                             const Context& context) {
+  if (ground_classes.empty()) {
+    throw runtime::InvalidArgument("the ground has at least one class, and none is given");
+  }
+  PointOptions wanted = points;
+  std::vector<std::string> files = paths;
+  std::optional<stream::CopiedPoints> copy;
+  if (std::ranges::find(paths, "-") != paths.end()) {
+    files = {copy.emplace(paths, points, context).path()};
+    wanted.format = "spp";
+    wanted.columns.clear();
+    wanted.skip_invalid = wanted.salvage = wanted.skip_broken = false;
+  }
+  const auto source = open_points(files, wanted, context);
+  const auto ground = open_points(files, stream::ground_options(wanted, ground_classes), context);
+  HeightReport report = measure_heights(*source, *ground, sink, options, how, context);
+  if (copy) report.points.skipped_files = copy->copied().skipped_files;
+  return report;
+}
+
+}  // namespace spillway
