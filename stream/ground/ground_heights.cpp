@@ -13,7 +13,8 @@ constexpr std::uint64_t kLeastNumbers = std::uint64_t{1} << 18;
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 22;
 constexpr std::size_t kHeightBytes = sizeof(std::uint32_t) + sizeof(double);
 constexpr std::size_t kLeastWaiting = 256;
-constexpr std::size_t kMostWaiting = 65536;
+/// Room that a vector has at most for what is in it.
+constexpr std::size_t kGrowth = 2;
 /// Stretches that are kept when they have been read: blocks of points are asked for nearly in
 /// order.
 constexpr std::size_t kLoaded = 3;
@@ -27,8 +28,8 @@ std::uint64_t stretch_numbers_for(std::uint64_t numbers) {
 GroundHeights::GroundHeights(std::uint64_t numbers, std::uint64_t memory, ScratchFolder& scratch)
     : stretch_numbers_(stretch_numbers_for(numbers)),
       stretch_count_(numbers / stretch_numbers_ + 1),
-      most_waiting_(std::clamp<std::size_t>(memory / stretch_count_ / kHeightBytes, kLeastWaiting,
-                                            kMostWaiting)),
+      most_waiting_(
+          std::max<std::size_t>(memory / stretch_count_ / kHeightBytes / kGrowth, kLeastWaiting)),
       scratch_(scratch),
       stretches_(std::make_unique<Stretch[]>(stretch_count_)) {}
 

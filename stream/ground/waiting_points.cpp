@@ -131,6 +131,7 @@ void WaitingPoints::take(Tile& tile, std::span<const Triangle> triangles) {
   bool enough = false;
   {
     const std::lock_guard lock(tile.mutex);
+    if (tile.triangles.empty()) tile.triangles.reserve(tile.enough() + triangles.size());
     tile.triangles.insert(tile.triangles.end(), triangles.begin(), triangles.end());
     tile.waiting += triangles.size();
     enough = tile.waiting >= tile.enough();

@@ -96,10 +96,15 @@ spillway_test(stream_library_test unit
           stream/library/passed_on_test.cpp stream/library/runs_beside_test.cpp
           stream/library/higher_dimensions_test.cpp
           stream/library/sort_points_test.cpp stream/library/triangulate_test.cpp
-          stream/library/products/check_test.cpp stream/library/products/info_test.cpp
+          stream/library/products/check_test.cpp stream/library/products/height_test.cpp
+          stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp
           stream/library/products/products_test.cpp
   LIBS spillway_stream spillway_library)
+
+spillway_test(stream_ground_test unit
+  SOURCES stream/ground/ground_heights_test.cpp stream/ground/tile_index_test.cpp
+  LIBS spillway_stream)
 
 spillway_test(stream_library_unit_test unit
   SOURCES stream/library/context/context_state_test.cpp stream/library/context/run_watch_test.cpp

@@ -19,6 +19,7 @@ endfunction()
 spillway_command_test(cli_tests cli
   tools/commands/cli_dimensions_test.cpp
   tools/commands/cli_formats_test.cpp
+  tools/commands/cli_height_test.cpp
   tools/commands/cli_info_check_test.cpp
   tools/commands/cli_shared_data_test.cpp
   tools/commands/cli_convert_copc_test.cpp tools/commands/cli_convert_laz_test.cpp
