@@ -41,6 +41,18 @@ Report MeshOrigin::send(MeshSink& sink, Run& run) const {
   return triangulate(*points, sink, how, context);
 }
 
+HeightReport MeshOrigin::measure_heights(PointSource& points, PointSink& sink,
+                                         const HeightOptions& options, Run& run) const {
+  const Context& context = run.context();
+  if (const auto* const file = std::get_if<File>(&from_)) {
+    const auto mesh = open_mesh(file->path, file->options, context);
+    return spillway::measure_heights(points, *mesh, sink, options, context);
+  }
+  const auto& [inputs, of_ground, how, attributes] = std::get<Points>(from_);
+  const auto ground = open_inputs(inputs, of_ground, context, attributes);
+  return spillway::measure_heights(points, *ground, sink, options, how, context);
+}
+
 void bind_mesh_origin(py::module_& module) {
   py::class_<MeshOrigin, std::shared_ptr<MeshOrigin>>(module, "MeshOrigin")
       .def(py::init([](Inputs inputs, PointOptions options, TriangulateOptions how,

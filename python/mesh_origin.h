@@ -1,6 +1,7 @@
 #pragma once
 
 #include <spillway/attribute_columns.h>
+#include <spillway/height.h>
 #include <spillway/mesh.h>
 #include <spillway/totals.h>
 #include <spillway/triangulate.h>
@@ -23,6 +24,10 @@ class MeshOrigin {
 
   /// Gives the mesh to a sink. To be called without the interpreter's lock.
   Report send(MeshSink& sink, Run& run) const;
+
+  /// Likewise, gives points with their heights above the mesh to a sink.
+  HeightReport measure_heights(PointSource& points, PointSink& sink, const HeightOptions& options,
+                               Run& run) const;
 
  private:
   struct Points {

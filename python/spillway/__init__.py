@@ -12,12 +12,14 @@ from . import _spillway
 from ._blocks import Block, Blocks, blocks
 from ._delaunay import Delaunay
 from ._files import check, convert, generate, info, read_points, triangulate
+from ._heights import height
 from ._products import Raster, contour, dem, render
 from ._reports import (
     CheckReport,
     ContourReport,
     ConvertReport,
     GenerateReport,
+    HeightReport,
     MeshInfo,
     PictureReport,
     PointsInfo,
@@ -35,6 +37,7 @@ __all__ = [
     "Delaunay",
     "Error",
     "GenerateReport",
+    "HeightReport",
     "MeshInfo",
     "PictureReport",
     "PointsInfo",
@@ -49,6 +52,7 @@ __all__ = [
     "convert",
     "dem",
     "generate",
+    "height",
     "info",
     "read_points",
     "render",

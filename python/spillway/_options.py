@@ -209,6 +209,9 @@ def as_crs(crs: Any) -> str:
     return " ".join(pathlib.Path(crs).read_text(encoding="utf-8").splitlines()).strip()
 
 
+put_classes = attribute("classes", _as_list)
+"""Sets the classes of points that are read, for `put`."""
+
 _OPTIONS = {
     "memory": _Option(
         "int or str, optional",
@@ -281,7 +284,7 @@ _OPTIONS = {
         "int or iterable of int, optional",
         "Use points of these classes only.",
         "points",
-        attribute("classes", _as_list),
+        put_classes,
     ),
     "drop_class": _Option(
         "int or iterable of int, optional",

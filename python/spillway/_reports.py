@@ -115,6 +115,26 @@ class RasterReport(RunReport):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
+class HeightReport(RunReport):
+    """What became of points that were measured, the least and the greatest height of all of them,
+    and the run that triangulated the ground."""
+
+    written: int
+    without_ground: int
+    below_ground: int
+    other_heights: int
+    lowest: float
+    highest: float
+    spilled_height_bytes: int
+
+    def _summary(self) -> str:
+        return (
+            f"{self.written} points, heights from {self.lowest:.6g} to {self.highest:.6g}, "
+            f"{self.without_ground} without ground; {_counts(self)}"
+        )
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
     """How many lines there are, of how many points, the least and the greatest height of the
     terrain, and the run that made them."""

@@ -128,6 +128,13 @@ class DemOptions:
     compress: str
     cog: bool
 
+class HeightOptions:
+    replace_z: bool
+    min_height: float | None
+    max_height: float | None
+    nodata: float
+    foreign_crs: bool
+
 class ContourOptions:
     interval: float
     base: float
@@ -175,6 +182,19 @@ def dem(run: Run, origin: MeshOrigin, output: bytes, options: DemOptions) -> _Fi
 def dem_in_memory(
     run: Run, origin: MeshOrigin, options: DemOptions
 ) -> tuple[_Figures, NDArray[np.float32], str]: ...
+def heights(
+    run: Run,
+    inputs: _Inputs,
+    options: PointOptions,
+    attributes: dict[str, NDArray[Any]],
+    ground: MeshOrigin,
+    how: HeightOptions,
+    output: bytes,
+    written: PointFileOptions,
+) -> _Figures: ...
+def heights_in_memory(
+    run: Run, inputs: _Inputs, options: PointOptions, ground: MeshOrigin, how: HeightOptions
+) -> tuple[_Figures, NDArray[np.float64]]: ...
 def contours(run: Run, origin: MeshOrigin, output: bytes, options: ContourOptions) -> _Figures: ...
 def picture(run: Run, origin: MeshOrigin, output: bytes, options: PictureOptions) -> _Figures: ...
 def convert_points(

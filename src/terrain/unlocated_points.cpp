@@ -31,8 +31,10 @@ double per_unit(std::size_t cells, double extent) {
 
 }  // namespace
 
-UnlocatedPoints::UnlocatedPoints(std::span<const NumberedPlace> places)
-    : places_(places.size()), size_(places.size()) {
+void UnlocatedPoints::assign(std::span<const NumberedPlace> places) {
+  places_.resize(places.size());
+  size_ = places.size();
+  box_ = {};
   for (const NumberedPlace& place : places) box_.expand(Point<2>{place.x, place.y});
   const double width = box_.extent(0);
   const double height = box_.extent(1);
@@ -44,7 +46,7 @@ UnlocatedPoints::UnlocatedPoints(std::span<const NumberedPlace> places)
       std::clamp(wanted / static_cast<double>(columns_), 1.0, height > 0 ? wanted : 1.0));
   cells_per_x_ = per_unit(columns_, width);
   cells_per_y_ = per_unit(rows_, height);
-  cells_.resize(rows_ * columns_);
+  cells_.assign(rows_ * columns_, {});
   const auto cell_at = [&](const NumberedPlace& place) -> Cell& {
     return cells_[row_of(place.y) * columns_ + column_of(place.x)];
   };
@@ -106,8 +108,8 @@ void UnlocatedPoints::take_located(const Triangle& triangle, std::vector<Numbere
   const std::size_t last_row = row_of(box.hi[1]);
   const Columns all{column_of(box.lo[0]), column_of(box.hi[0])};
   const bool is_small = last_row - first_row < 2 || all.last - all.first < 2;
-  const Triangle canonical = in_canonical_order(triangle);
-  std::optional<int> turn;
+  Triangle canonical;
+  std::optional<int> turn;  // when it is first needed, as what follows
   std::optional<TrianglePlane> plane;
   for (std::size_t row = first_row; row <= last_row; ++row) {
     const Columns columns = is_small ? all : columns_in_row(triangle, box, row);
@@ -120,7 +122,10 @@ void UnlocatedPoints::take_located(const Triangle& triangle, std::vector<Numbere
           ++i;
           continue;
         }
-        if (!turn) turn = turn_of(canonical);
+        if (!turn) {
+          canonical = in_canonical_order(triangle);
+          turn = turn_of(canonical);
+        }
         if (*turn == 0) return;
         const auto found = locate(canonical, *turn, place.x, place.y);
         if (!found) {

@@ -25,7 +25,11 @@ struct NumberedHeight {
 /// Places whose triangles are still to come, in a grid of cells of some places each.
 class UnlocatedPoints {
  public:
-  explicit UnlocatedPoints(std::span<const NumberedPlace> places);
+  UnlocatedPoints() = default;
+  explicit UnlocatedPoints(std::span<const NumberedPlace> places) { assign(places); }
+
+  /// As if it were new, but for the memory it has.
+  void assign(std::span<const NumberedPlace> places);
 
   /// Takes out the places in the closed triangle, and appends its heights there. They depend on the
   /// triangle alone, on its edges and corners on these alone (TrianglePlane). A triangle without

@@ -36,6 +36,14 @@ void TileIndex::put(const TileNode<2>& from, std::size_t to) {
   for (std::size_t c = 0; c < children; ++c) put(from.children[c], first + c);
 }
 
+std::vector<std::uint32_t> TileIndex::tiles_in(const Box<2>& box) const {
+  std::vector<std::uint32_t> found;
+  const NumberedBox one{box, 0};
+  visit({&one, 1},
+        [&](std::uint32_t tile, std::span<const NumberedBox>) { found.push_back(tile); });
+  return found;
+}
+
 void TileIndex::visit(std::span<const NumberedBox> boxes, const Visit& visit) const {
   if (nodes_.empty() || boxes.empty()) return;
   visit_below(nodes_[0], box_around(boxes), boxes, visit);

@@ -26,6 +26,9 @@ class TileIndex {
   /// The tiles, in the order of their numbers.
   [[nodiscard]] std::span<const TileNode<2>* const> tiles() const { return tiles_; }
 
+  /// The numbers of all tiles that have something in common with a box.
+  [[nodiscard]] std::vector<std::uint32_t> tiles_in(const Box<2>& box) const;
+
   /// Calls visit(tile, boxes) for each tile that has a box in common with some of `boxes`, with
   /// these.
   using Visit = std::function<void(std::uint32_t tile, std::span<const NumberedBox> boxes)>;

@@ -27,6 +27,8 @@ constexpr std::uint64_t kManyTiles = 8192;
 /// It pays to load a tile for this many triangles, and for half as many as it has points.
 constexpr std::size_t kLeastTriangles = 1024;
 constexpr std::size_t kTrianglesAtATime = 4096;
+/// Triangles that come together and reach into no more tiles lie together.
+constexpr std::size_t kFewTiles = 16;
 /// Of those on the disk so many are read at a time.
 constexpr std::size_t kReadAtATime = 16384;
 
@@ -37,13 +39,42 @@ std::size_t tile_points_for(const WaitingPointsOptions& options) {
   return std::max<std::size_t>(kLeastTilePoints, std::min<std::uint64_t>(wanted, room));
 }
 
-Box<2> box_of(const Triangle& triangle) {
-  Box<2> box;
-  for (const Point<3>& corner : triangle) box.expand(Point<2>{corner[0], corner[1]});
-  return box;
+/// On which sides of a box a point lies, as bits. Of a triangle whose corners have one in common no
+/// point lies in the box.
+std::uint8_t sides_of(const Box<2>& box, const PlacedPoint& p) {
+  return static_cast<std::uint8_t>((p[0] < box.lo[0] ? 1 : 0) | (p[0] > box.hi[0] ? 2 : 0) |
+                                   (p[1] < box.lo[1] ? 4 : 0) | (p[1] > box.hi[1] ? 8 : 0));
 }
 
 }  // namespace
+
+/// Triangles that come together.
+struct WaitingPoints::Block {
+  std::span<const PlacedPoint> vertices;
+  std::span<const std::uint32_t> corners;
+
+  [[nodiscard]] std::size_t size() const { return corners.size() / 3; }
+  [[nodiscard]] const PlacedPoint& corner(std::size_t triangle, std::size_t c) const {
+    return vertices[corners[3 * triangle + c]];
+  }
+  [[nodiscard]] Triangle triangle(std::size_t t) const {
+    return {corner(t, 0).numbers(), corner(t, 1).numbers(), corner(t, 2).numbers()};
+  }
+  [[nodiscard]] Box<2> box(std::size_t t) const {
+    Box<2> box;
+    for (std::size_t c = 0; c < 3; ++c) box.expand(Point<2>{corner(t, c)[0], corner(t, c)[1]});
+    return box;
+  }
+};
+
+/// What a thread needs to locate the points of a tile.
+struct WaitingPoints::Workspace {
+  std::vector<NumberedPlace> places;
+  UnlocatedPoints points;
+  std::vector<NumberedPlace> rest;
+  std::vector<NumberedHeight> found;
+  std::vector<Triangle> triangles;
+};
 
 /// What waits at a tile. Whoever has both mutexes locked `places_mutex` first.
 struct WaitingPoints::Tile {
@@ -58,6 +89,7 @@ struct WaitingPoints::Tile {
   std::vector<Spilled> spilled;
   std::size_t waiting = 0;  ///< triangles, also on the disk
 
+  Box<2> box;
   std::atomic<std::uint64_t> unlocated = 0;  ///< points
   std::mutex places_mutex;                   ///< guards the others: held while points are located
   const TileNode<2>* stored = nullptr;       ///< where the points are, before they are first loaded
@@ -99,52 +131,84 @@ void WaitingPoints::deal(PointFeed& points, const std::function<std::uint64_t()>
   tiles_ = std::make_unique<Tile[]>(index_.tiles().size());
   for (std::size_t t = 0; t < index_.tiles().size(); ++t) {
     tiles_[t].stored = index_.tiles()[t];
+    tiles_[t].box = index_.tiles()[t]->box;
     tiles_[t].unlocated = index_.tiles()[t]->points;
   }
 }
 
 void WaitingPoints::add(std::span<const PlacedPoint> vertices,
                         std::span<const std::uint32_t> corners) {
-  const auto triangle_at = [&](std::size_t t) {
-    return Triangle{vertices[corners[3 * t]].numbers(), vertices[corners[3 * t + 1]].numbers(),
-                    vertices[corners[3 * t + 2]].numbers()};
-  };
+  if (corners.empty()) return;
+  const Block block{vertices, corners};
+  Box<2> box;
+  for (const std::uint32_t v : corners) box.expand(Point<2>{vertices[v][0], vertices[v][1]});
+  const std::vector<std::uint32_t> tiles = index_.tiles_in(box);
+  // Isolated: the caller may hold what another of its tasks would wait for.
+  isolated([&] {
+    if (tiles.size() <= kFewTiles) {
+      add_coherent(block, tiles);
+    } else {
+      add_scattered(block);
+    }
+  });
+  if (triangle_bytes_ > memory_ / kTriangleShare) relieve();
+}
+
+/// Triangles that lie together: where enough of them have come, they need not wait.
+void WaitingPoints::add_coherent(const Block& block, std::span<const std::uint32_t> tiles) {
+  parallel_for(tiles.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+    Tile& tile = tiles_[tiles[i]];
+    if (tile.unlocated == 0) return;
+    std::vector<std::uint8_t> sides;
+    sides.reserve(block.vertices.size());
+    for (const PlacedPoint& p : block.vertices) sides.push_back(sides_of(tile.box, p));
+    std::vector<std::uint32_t> numbers;
+    for (std::size_t t = 0; t < block.size(); ++t) {
+      const std::uint32_t* const v = &block.corners[3 * t];
+      if ((sides[v[0]] & sides[v[1]] & sides[v[2]]) == 0) {
+        numbers.push_back(static_cast<std::uint32_t>(t));
+      }
+    }
+    wait_at(tile, block, numbers);
+  });
+}
+
+void WaitingPoints::add_scattered(const Block& block) {
   const auto add_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
     std::vector<NumberedBox> boxes;
     boxes.reserve(end - begin);
     for (std::size_t t = begin; t < end; ++t) {
-      boxes.push_back({box_of(triangle_at(t)), static_cast<std::uint32_t>(t)});
+      boxes.push_back({block.box(t), static_cast<std::uint32_t>(t)});
     }
-    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> numbers;
     index_.visit(boxes, [&](std::uint32_t tile, std::span<const NumberedBox> some) {
       if (tiles_[tile].unlocated == 0) return;
-      triangles.clear();
-      for (const NumberedBox& one : some) triangles.push_back(triangle_at(one.number));
-      take(tiles_[tile], triangles);
+      numbers.clear();
+      for (const NumberedBox& one : some) numbers.push_back(one.number);
+      wait_at(tiles_[tile], block, numbers);
     });
   };
-  // Isolated: the caller may hold what another of its tasks would wait for.
-  isolated([&] { parallel_for(corners.size() / 3, kTrianglesAtATime, add_some); });
+  parallel_for(block.size(), kTrianglesAtATime, add_some);
 }
 
-void WaitingPoints::take(Tile& tile, std::span<const Triangle> triangles) {
-  bool enough = false;
+void WaitingPoints::wait_at(Tile& tile, const Block& block,
+                            std::span<const std::uint32_t> numbers) {
+  if (numbers.empty()) return;
   {
     const std::lock_guard lock(tile.mutex);
-    if (tile.triangles.empty()) tile.triangles.reserve(tile.enough() + triangles.size());
-    tile.triangles.insert(tile.triangles.end(), triangles.begin(), triangles.end());
-    tile.waiting += triangles.size();
-    enough = tile.waiting >= tile.enough();
+    if (tile.waiting + numbers.size() < tile.enough()) {
+      for (const std::uint32_t t : numbers) tile.triangles.push_back(block.triangle(t));
+      tile.waiting += numbers.size();
+      triangle_bytes_ += numbers.size() * sizeof(Triangle);
+      return;
+    }
   }
-  triangle_bytes_ += triangles.size_bytes();
-  if (enough) locate(tile);
-  if (triangle_bytes_ > memory_ / kTriangleShare) relieve();
+  locate(tile, block, numbers);
 }
 
-/// If another thread is at it, that one leaves what has come meanwhile to the next.
-void WaitingPoints::locate(Tile& tile) {
-  const std::unique_lock busy(tile.places_mutex, std::try_to_lock);
-  if (!busy) return;
+/// Looks for the tile's points in these triangles and in those that wait at it.
+void WaitingPoints::locate(Tile& tile, const Block& block, std::span<const std::uint32_t> numbers) {
+  const std::lock_guard busy(tile.places_mutex);
   std::vector<Triangle> triangles;
   std::vector<Tile::Spilled> spilled;
   {
@@ -153,35 +217,39 @@ void WaitingPoints::locate(Tile& tile) {
     spilled.swap(tile.spilled);
     tile.waiting = 0;
   }
+  std::unique_ptr<Workspace> work = take_workspace();
+  UnlocatedPoints& points = work->points;
+  std::vector<NumberedHeight>& found = work->found;
   std::uint64_t unlocated = 0;
-  std::vector<NumberedPlace> rest;
-  std::vector<NumberedHeight> found;
-  std::vector<Triangle> some;
-  visit_places(tile, [&](std::span<const NumberedPlace> places) {
-    UnlocatedPoints points(places);
+  visit_places(tile, *work, [&] {
+    points.assign(work->places);
     found.clear();
+    for (const std::uint32_t t : numbers) points.take_located(block.triangle(t), found);
     for (const Triangle& triangle : triangles) points.take_located(triangle, found);
     for (const auto& [offset, count] : spilled) {
+      std::vector<Triangle>& some = work->triangles;
       for (std::size_t done = 0; done < count && points.size() > 0; done += some.size()) {
         some.resize(std::min(count - done, kReadAtATime));
         spilled_.read(offset + done * sizeof(Triangle), std::as_writable_bytes(std::span(some)));
         for (const Triangle& triangle : some) points.take_located(triangle, found);
       }
     }
-    rest.clear();
-    points.append_to(rest);
-    keep_rest(tile, rest);
-    unlocated += rest.size();
+    work->rest.clear();
+    points.append_to(work->rest);
+    keep_rest(tile, work->rest);
+    unlocated += work->rest.size();
     located_ += found.size();
     heights_->add(found);
   });
+  give_back(std::move(work));
   triangle_bytes_ -= triangles.size() * sizeof(Triangle);
   tile.unlocated = unlocated;
 }
 
-void WaitingPoints::visit_places(Tile& tile,
-                                 const std::function<void(std::span<const NumberedPlace>)>& visit) {
-  std::vector<NumberedPlace> places;
+/// Brings the places of a tile that are not located, some at a time, to `work.places`.
+void WaitingPoints::visit_places(Tile& tile, Workspace& work, const std::function<void()>& visit) {
+  std::vector<NumberedPlace>& places = work.places;
+  places.clear();
   if (const TileNode<2>* const node = std::exchange(tile.stored, nullptr)) {
     StoredTile stored;
     {
@@ -189,7 +257,7 @@ void WaitingPoints::visit_places(Tile& tile,
       stored = tree_->loader().read(*node);
     }
     const auto give = [&] {
-      visit(places);
+      visit();
       places.clear();
     };
     drain_points(stored, [&](const PointsView& some) {
@@ -203,12 +271,28 @@ void WaitingPoints::visit_places(Tile& tile,
   }
   const std::vector<NumberedPlace> rest = std::exchange(tile.rest, {});
   rest_bytes_ -= std::span(rest).size_bytes();
-  if (!rest.empty()) visit(rest);
+  if (!rest.empty()) {
+    places.assign(rest.begin(), rest.end());
+    visit();
+  }
   for (const auto& [offset, count] : std::exchange(tile.spilled_rest, {})) {
     places.resize(count);
     spilled_.read(offset, std::as_writable_bytes(std::span(places)));
-    visit(places);
+    visit();
   }
+}
+
+std::unique_ptr<WaitingPoints::Workspace> WaitingPoints::take_workspace() {
+  const std::lock_guard lock(workspaces_mutex_);
+  if (workspaces_.empty()) return std::make_unique<Workspace>();
+  std::unique_ptr<Workspace> workspace = std::move(workspaces_.back());
+  workspaces_.pop_back();
+  return workspace;
+}
+
+void WaitingPoints::give_back(std::unique_ptr<Workspace> workspace) {
+  const std::lock_guard lock(workspaces_mutex_);
+  workspaces_.push_back(std::move(workspace));
 }
 
 void WaitingPoints::keep_rest(Tile& tile, std::span<const NumberedPlace> rest) {
@@ -249,7 +333,7 @@ void WaitingPoints::finish(const std::function<void(std::uint64_t points)>& prog
   std::uint64_t done = 0;  // guarded by mutex
   parallel_for(index_.tiles().size(), 1, [&](std::size_t t, std::size_t, std::size_t) {
     Tile& tile = tiles_[t];
-    if (tile.waiting > 0 && tile.unlocated > 0) locate(tile);
+    if (tile.waiting > 0 && tile.unlocated > 0) locate(tile, {}, {});
     const std::lock_guard lock(mutex);
     progress(done += index_.tiles()[t]->points);
   });

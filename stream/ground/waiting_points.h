@@ -33,8 +33,8 @@ struct WaitingPointsOptions {
 /// Points of any number that wait for the triangles below them, which come in any order: a join of
 /// both by tiles (after J. Patel, D. DeWitt, "Partition based spatial-merge join", SIGMOD 1996).
 /// Points are dealt into tiles first. A triangle waits at each tile that it may have points of.
-/// When so many wait that it pays, the tile's points are loaded, and those that are located are
-/// done; the others wait on. So most points are loaded once, with the triangles that come together,
+/// When so many have come that it pays, the tile's points are loaded, and those that are located
+/// are done; the others wait on. So most points are loaded once, with the triangles that come together,
 /// and only those at the borders of what was triangulated together more often. Triangles that wait
 /// in vain go to the disk when memory is short.
 class WaitingPoints {
@@ -62,12 +62,18 @@ class WaitingPoints {
 
  private:
   struct Tile;
+  struct Block;
+  struct Workspace;
 
-  void take(Tile& tile, std::span<const Triangle> triangles);
-  void locate(Tile& tile);
-  void visit_places(Tile& tile, const std::function<void(std::span<const NumberedPlace>)>& visit);
+  void add_coherent(const Block& block, std::span<const std::uint32_t> tiles);
+  void add_scattered(const Block& block);
+  void wait_at(Tile& tile, const Block& block, std::span<const std::uint32_t> numbers);
+  void locate(Tile& tile, const Block& block, std::span<const std::uint32_t> numbers);
+  void visit_places(Tile& tile, Workspace& work, const std::function<void()>& visit);
   void keep_rest(Tile& tile, std::span<const NumberedPlace> rest);
   void relieve();
+  [[nodiscard]] std::unique_ptr<Workspace> take_workspace();
+  void give_back(std::unique_ptr<Workspace> workspace);
 
   const std::uint64_t memory_;
   const MemoryPlan plan_;
@@ -83,6 +89,8 @@ class WaitingPoints {
   SharedScratch spilled_;
   std::mutex loader_mutex_;
   std::mutex relief_mutex_;
+  std::mutex workspaces_mutex_;
+  std::vector<std::unique_ptr<Workspace>> workspaces_;  ///< not in use; guarded by its mutex
   std::atomic<std::uint64_t> located_ = 0;
   std::atomic<std::uint64_t> triangle_bytes_ = 0;  ///< of triangles that wait in memory
   std::atomic<std::uint64_t> rest_bytes_ = 0;      ///< of points in memory that were loaded before

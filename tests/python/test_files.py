@@ -358,7 +358,7 @@ class Options(unittest.TestCase):
         beside = set(
             "inputs file mesh family output threads memory scratch_folder max_tmp progress".split()
         )
-        for name in "triangulate dem contour render check convert info generate".split():
+        for name in "triangulate dem height contour render check convert info generate".split():
             told = set(re.findall(r"--([a-z][a-z-]+)", command(name, "--help").split("Examples:")[0]))
             expected = {
                 option.removeprefix("no-").replace("-", "_")

@@ -16,6 +16,7 @@
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
+#include "src/runtime/freed_memory.h"
 #include "stream/ground/ground_writer.h"
 #include "stream/ground/repeated_points.h"
 #include "stream/ground/waiting_points.h"
@@ -114,6 +115,7 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
         sink_(sink),
         options_(options),
         watch_(watch),
+        freed_(own_memory(context.memory())),
         scratch_(context.state().scratch(context)) {}
 
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override {
@@ -198,6 +200,7 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
   spillway::PointSink& sink_;
   const HeightOptions& options_;
   RunWatch& watch_;
+  const FreedMemory freed_;  ///< the process may hold this part of the memory, too
   std::shared_ptr<ScratchFolder> scratch_;
   RunPoints run_;
   std::optional<IntegerLattice> lattice_;  ///< of the ground
