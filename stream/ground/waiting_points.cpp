@@ -324,7 +324,7 @@ void WaitingPoints::relieve() {
     if (bytes.empty()) continue;
     tile.spilled.push_back({spilled_.append(bytes), tile.triangles.size()});
     triangle_bytes_ -= bytes.size();
-    tile.triangles = {};
+    std::vector<Triangle>().swap(tile.triangles);
   }
 }
 

@@ -28,6 +28,7 @@ spillway_command_test(cli_tests cli
   tools/commands/cli_convert_test.cpp tools/inputs/cli_stream_test.cpp
   tools/commands/cli_triangulate_test.cpp
   tools/commands/cli_vertex_attributes_test.cpp
+  tools/commands/cli_volume_test.cpp
   tools/options/cli_unused_options_test.cpp
   tools/options/cli_usage_test.cpp)
 spillway_command_test(cli_fault_tests fault

@@ -6,6 +6,7 @@
   DO(triangulate)                \
   DO(dem)                        \
   DO(height)                     \
+  DO(volume)                     \
   DO(contour)                    \
   DO(render)                     \
   DO(info)                       \

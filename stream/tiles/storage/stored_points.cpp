@@ -14,7 +14,7 @@ void drain_points(StoredTile& stored, const std::function<void(const PointsView&
                     segment.where, points);
       take(PointsView::of(points));
     }
-    segment.bytes = {};
+    std::vector<std::byte>().swap(segment.bytes);
     segment.buffer.drain(take);
   }
 }

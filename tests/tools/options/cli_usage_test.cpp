@@ -45,7 +45,7 @@ std::size_t longest_line(const std::string& text) {
 TEST(Usage, HelpFitsTheColumnsThereAre) {
   const Workspace work;
   for (const std::string command :
-       {"", "triangulate", "dem", "height", "contour", "render", "info", "generate", "check", "convert",
+       {"", "triangulate", "dem", "height", "volume", "contour", "render", "info", "generate", "check", "convert",
         "batch", "completion", "manual"}) {
     const std::string help = command + " --help";
     EXPECT_LE(longest_line(work.succeed("COLUMNS=60 spillway " + help)), 60U) << command;

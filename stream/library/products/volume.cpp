@@ -1,0 +1,330 @@
+#include <spillway/volume.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/gdal/gdal.h"
+#include "src/error.h"
+#include "src/geometry/longest_edge.h"
+#include "src/parallel/parallel.h"
+#include "src/runtime/freed_memory.h"
+#include "src/terrain/overlay_volume.h"
+#include "stream/ground/overlay_cells.h"
+#include "stream/library/context/context_state.h"
+#include "stream/library/meshes/engine_sink.h"
+#include "stream/sinks/simplex_sink.h"
+
+namespace spillway::stream {
+namespace {
+
+/// The part of the memory that is for triangles.
+constexpr std::uint64_t kTriangleShare = 2;
+constexpr std::size_t kTrianglesAtATime = 4096;
+
+/// Gives the triangles of a mesh, in output coordinates, to whoever takes them.
+class SurfaceWriter final : public SimplexSink<WorldPoint> {
+ public:
+  /// Called by many threads at once.
+  using Take = std::function<void(std::span<const Triangle>)>;
+
+  SurfaceWriter(const std::optional<IntegerLattice>& lattice, double z_factor,
+                std::optional<double> max_edge, Take take)
+      : SimplexSink(2),
+        lattice_(lattice),
+        z_factor_(z_factor),
+        max_edge_(max_edge),
+        take_(std::move(take)) {}
+
+  /// Triangles with too long an edge.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+
+ private:
+  [[nodiscard]] std::vector<WorldPoint> values_of(
+      std::span<const LatticePoint> vertices) const override {
+    std::vector<WorldPoint> placed;
+    placed.reserve(vertices.size());
+    for (const LatticePoint& vertex : vertices) {
+      placed.push_back(in_world(lattice_, vertex));
+      placed.back()[2] *= z_factor_;
+    }
+    return placed;
+  }
+  void take_vertices(std::span<const WorldPoint> /*vertices*/) override {}
+  void take_simplices(std::span<const WorldPoint> vertices,
+                      std::span<const std::uint32_t> corners) override {
+    const auto take_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+      std::vector<Triangle> triangles;
+      triangles.reserve(end - begin);
+      for (std::size_t t = begin; t < end; ++t) {
+        const std::uint32_t* const v = &corners[3 * t];
+        const Triangle triangle{vertices[v[0]].numbers(), vertices[v[1]].numbers(),
+                                vertices[v[2]].numbers()};
+        if (max_edge_ && has_longer_edge<2>(in_canonical_order(triangle), *max_edge_)) {
+          ++left_out_;
+        } else {
+          triangles.push_back(triangle);
+        }
+      }
+      take_(triangles);
+    };
+    // Isolated: the caller may hold what another of its tasks would wait for.
+    isolated([&] { parallel_for(corners.size() / 3, kTrianglesAtATime, take_some); });
+  }
+
+  const std::optional<IntegerLattice> lattice_;
+  const double z_factor_;
+  const std::optional<double> max_edge_;
+  const Take take_;
+  std::atomic<std::uint64_t> left_out_ = 0;
+};
+
+void check(const VolumeOptions& options) {
+  check_max_edge(options.max_edge);
+  if (options.z_factor && !(*options.z_factor > 0 && std::isfinite(*options.z_factor))) {
+    throw InvalidArgument(
+        fmt::format("heights are multiplied by a number above 0, not by {}", *options.z_factor));
+  }
+}
+
+/// What brings heights to the unit of x and y. Throws Failure for longitude and latitude.
+double z_factor_of(const MeshStart& start, const VolumeOptions& options, const Context& context) {
+  if (start.header.crs.empty()) return options.z_factor.value_or(1);
+  const CrsUnits units = gdal().crs_units(start.header.crs);
+  if (units.is_geographic && !options.foreign_crs) {
+    throw Failure(fmt::format("{} is in {}, whose longitude and latitude are no lengths: reproject "
+                              "it, or take coordinates as they are",
+                              start.name, gdal().crs_name(start.header.crs)),
+                  ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kForeignCrs});
+  }
+  if (options.z_factor) return *options.z_factor;
+  constexpr double kRounding = 1e-9;  // the two feet differ by 2e-6
+  const double factor = units.vertical / units.horizontal;
+  if (units.is_geographic || !(factor > 0) || std::abs(factor - 1) <= kRounding) return 1;
+  if (context.options().detail) {
+    context.options().detail(fmt::format("{}: heights are multiplied by {:.12g}",
+                                         gdal().crs_name(start.header.crs), factor));
+  }
+  return factor;
+}
+
+/// A surface whose triangles something is derived from.
+template <typename PublicSink>
+class SurfaceSink : public OwnSink<PublicSink> {
+ public:
+  SurfaceSink(const VolumeOptions& options, const Context& context)
+      : OwnSink<PublicSink>(context), options_(options) {}
+
+  [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
+  void identify(RunIdentity& identity) const override { identify_product("volume", "", identity); }
+  void finalize(RunWatch& /*watch*/, Report& report, OtherShares& /*others*/) override {
+    writer_->finish(report.mesh);
+    report.left_out += writer_->left_out();
+    is_complete_ = true;
+  }
+
+  [[nodiscard]] bool is_complete() const { return is_complete_; }
+  [[nodiscard]] const VolumeOptions& options() const { return options_; }
+  [[nodiscard]] const std::string& crs() const { return crs_; }
+  [[nodiscard]] const std::optional<IntegerLattice>& lattice() const { return lattice_; }
+
+ protected:
+  BlockSink& open(const MeshStart& start) override {
+    refuse_tetrahedra(start);
+    refuse_without_heights(start);
+    crs_ = start.header.crs;
+    lattice_ = start.header.lattice;
+    return writer_.emplace(start.header.lattice, z_factor_of(start, options_, this->context()),
+                           start.is_triangulated ? std::nullopt : options_.max_edge,
+                           [this](std::span<const Triangle> triangles) { take(triangles); });
+  }
+
+ private:
+  /// By many threads at once.
+  virtual void take(std::span<const Triangle> triangles) = 0;
+
+  VolumeOptions options_;
+  std::string crs_;
+  std::optional<IntegerLattice> lattice_;
+  std::optional<SurfaceWriter> writer_;
+  bool is_complete_ = false;
+};
+
+class LevelSink final : public SurfaceSink<LevelVolumeSink> {
+ public:
+  LevelSink(double level, const VolumeOptions& options, const Context& context)
+      : SurfaceSink(options, context), level_(level) {
+    check(options);
+    if (!std::isfinite(level)) throw InvalidArgument("a level is a finite number");
+  }
+
+  [[nodiscard]] Volume volume() const override {
+    return {.cut = sums_.cut.value(),
+            .fill = sums_.fill.value(),
+            .cut_area = sums_.cut_area.value(),
+            .fill_area = sums_.fill_area.value(),
+            .area = sums_.area.value(),
+            .first_area = sums_.area.value()};
+  }
+
+ private:
+  BlockSink& open(const MeshStart& start) override {
+    scaled_level_ = level_ * z_factor_of(start, options(), context());
+    return SurfaceSink::open(start);
+  }
+  void take(std::span<const Triangle> triangles) override {
+    VolumeSums some;
+    for (const Triangle& triangle : triangles) add_above(triangle, scaled_level_, some);
+    const std::lock_guard lock(mutex_);
+    sums_.add(some);
+  }
+
+  const double level_;
+  double scaled_level_ = 0;
+  std::mutex mutex_;  ///< guards the next one
+  VolumeSums sums_;
+};
+
+/// One of two surfaces, which brings its triangles to the cells of both.
+class OneOfTwo final : public SurfaceSink<spillway::MeshSink> {
+ public:
+  /// Called when the surface begins, and when it is known where it lies.
+  struct Told {
+    std::function<void(const MeshStart& start)> begins;
+    std::function<void(const Box<2>& extent, std::uint64_t vertices)> extent;
+    std::function<void(std::span<const Triangle> triangles)> triangles;
+  };
+
+  OneOfTwo(Told told, const VolumeOptions& options, const Context& context)
+      : SurfaceSink(options, context), told_(std::move(told)) {}
+
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override {
+    return limit / kTriangleShare;
+  }
+  [[nodiscard]] bool wants_extent() const override { return true; }
+  void extent_known(const Box<2>& extent, std::uint64_t vertices) override {
+    Box<2> box;
+    for (const Point<2>& corner : {extent.lo, extent.hi}) {
+      box.expand(
+          lattice() ? Point<2>{lattice()->to_world(0, corner[0]), lattice()->to_world(1, corner[1])}
+                    : corner);
+    }
+    told_.extent(box, vertices);
+  }
+
+  [[nodiscard]] double area() const { return area_.value(); }
+
+ private:
+  BlockSink& open(const MeshStart& start) override {
+    told_.begins(start);
+    return SurfaceSink::open(start);
+  }
+  void take(std::span<const Triangle> triangles) override {
+    ExactSum some;
+    for (const Triangle& triangle : triangles) some.add(plane_area(triangle));
+    told_.triangles(triangles);
+    const std::lock_guard lock(mutex_);
+    area_.add(some);
+  }
+
+  const Told told_;
+  std::mutex mutex_;  ///< guards the next one
+  ExactSum area_;
+};
+
+class BetweenTwo final : public VolumeBetween {
+ public:
+  BetweenTwo(const VolumeOptions& options, const Context& context)
+      : context_(context),
+        freed_(context.memory() / kTriangleShare),
+        scratch_(context.state().scratch(context)),
+        first_({.begins = [](const MeshStart& /*start*/) {},
+                .extent =
+                    [this](const Box<2>& extent, std::uint64_t vertices) {
+                      cells_.emplace(extent, 2 * vertices, context_.memory() / kTriangleShare,
+                                     *scratch_);
+                    },
+                .triangles = [this](std::span<const Triangle> some) { cells_->add(0, some); }},
+               options, context),
+        second_({.begins = [this](const MeshStart& start) { check_second(start); },
+                 .extent = [](const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {},
+                 .triangles = [this](std::span<const Triangle> some) { cells_->add(1, some); }},
+                options, context) {
+    check(options);
+  }
+
+  [[nodiscard]] spillway::MeshSink& first() override { return first_; }
+  [[nodiscard]] spillway::MeshSink& second() override { return second_; }
+
+  [[nodiscard]] Volume measure() override {
+    if (!first_.is_complete() || !second_.is_complete()) {
+      throw InvalidArgument("a volume lies between two surfaces, and one has not come");
+    }
+    RunWatch watch(context_);
+    watch.begin("overlay", "cells");
+    VolumeSums sums;
+    with_threads(context_.threads(), [&] {
+      sums = cells_->between([&](std::uint64_t done) {
+        watch.tell(done, static_cast<double>(done) / static_cast<double>(cells_->cells()));
+      });
+    });
+    watch.end(cells_->cells());
+    return {.cut = sums.cut.value(),
+            .fill = sums.fill.value(),
+            .cut_area = sums.cut_area.value(),
+            .fill_area = sums.fill_area.value(),
+            .area = sums.area.value(),
+            .first_area = first_.area(),
+            .second_area = second_.area(),
+            .spilled_bytes = cells_->spilled_bytes()};
+  }
+
+ private:
+  void check_second(const MeshStart& start) const {
+    if (!first_.is_complete()) throw InvalidArgument("the first surface comes first");
+    const std::string& crs = start.header.crs;
+    if (crs.empty() || first_.crs().empty() || crs == first_.crs() ||
+        first_.options().foreign_crs || gdal().same_crs(crs, first_.crs())) {
+      return;
+    }
+    throw Failure(
+        fmt::format("the first surface is in {}, but {} in {}; reproject one of them, or take "
+                    "coordinates as they are",
+                    gdal().crs_name(first_.crs()), start.name, gdal().crs_name(crs)),
+        ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kForeignCrs});
+  }
+
+  const Context context_;
+  const FreedMemory freed_;  ///< the process may hold this part of the memory, too
+  std::shared_ptr<ScratchFolder> scratch_;
+  std::optional<OverlayCells> cells_;
+  OneOfTwo first_;
+  OneOfTwo second_;
+};
+
+}  // namespace
+}  // namespace spillway::stream
+
+namespace spillway {
+
+VolumeBetween::~VolumeBetween() = default;
+
+std::unique_ptr<VolumeBetween> measure_between(const VolumeOptions& options,
+                                               const Context& context) {
+  return std::make_unique<stream::BetweenTwo>(options, context);
+}
+
+std::unique_ptr<LevelVolumeSink> measure_above(double level, const VolumeOptions& options,
+                                               const Context& context) {
+  return std::make_unique<stream::LevelSink>(level, options, context);
+}
+
+}  // namespace spillway
