@@ -49,8 +49,7 @@ Polygon left_of(const Polygon& polygon, const Point<2>& a, const Point<2>& b) {
   return left;
 }
 
-/// Counter-clockwise, from the corner that comes first in lexicographic order, which is taken for
-/// the origin of x and y.
+/// The triangle in coordinates that are counted from x and y of a point.
 Triangle about(const Point<3>& origin, const Triangle& canonical) {
   Triangle moved = canonical;
   for (Point<3>& corner : moved) {
@@ -119,25 +118,20 @@ void VolumeSums::add(const VolumeSums& other) {
 }
 
 double plane_area(const Triangle& triangle) {
-  const Triangle canonical = in_canonical_order(triangle);
-  return std::abs(twice_area(about(canonical[0], canonical))) / 2;
+  return std::abs(twice_area(about(triangle[0], triangle))) / 2;
 }
 
 /// Of the two the one that comes first in lexicographic order is cut, so that they may be taken the
 /// other way round.
 void add_between(const Triangle& first, const Triangle& second, VolumeSums& sums) {
-  Triangle lower = in_canonical_order(first);
-  Triangle upper = in_canonical_order(second);
-  const bool turned = upper < lower;
-  if (turned) std::swap(lower, upper);
+  const bool turned = second < first;
+  const Triangle& lower = turned ? second : first;
   const Triangle a = about(lower[0], lower);
-  Triangle b = about(lower[0], upper);
+  Triangle b = about(lower[0], turned ? first : second);
   const double turn_a = twice_area(a);
   const double turn_b = twice_area(b);
   if (turn_a == 0 || turn_b == 0) return;
-  const TrianglePlane plane_a(a, {1, 1});
-  const Triangle ordered_b = b;  // which the plane refers to
-  const TrianglePlane plane_b(ordered_b, {1, 1});
+  const Triangle ordered_b = b;
   if (turn_b < 0) std::swap(b[1], b[2]);
   Polygon polygon;
   for (const Point<3>& corner : a) polygon.add({corner[0], corner[1]});
@@ -148,6 +142,8 @@ void add_between(const Triangle& first, const Triangle& second, VolumeSums& sums
     polygon = left_of(polygon, {from[0], from[1]}, {to[0], to[1]});
   }
   if (polygon.size < 3) return;
+  const TrianglePlane plane_a(a, {1, 1});
+  const TrianglePlane plane_b(ordered_b, {1, 1});
   std::array<Corner, 7> corners;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     const auto& [x, y] = polygon.corners[i];
@@ -159,8 +155,7 @@ void add_between(const Triangle& first, const Triangle& second, VolumeSums& sums
 }
 
 void add_above(const Triangle& triangle, double level, VolumeSums& sums) {
-  const Triangle canonical = in_canonical_order(triangle);
-  const Triangle t = about(canonical[0], canonical);
+  const Triangle t = about(triangle[0], triangle);
   std::array<Corner, 3> part;
   for (std::size_t i = 0; i < 3; ++i) part[i] = {t[i][0], t[i][1], t[i][2] - level};
   add_part(part, false, sums);

@@ -16,12 +16,14 @@ struct VolumeSums {
   void add(const VolumeSums& other);
 };
 
+// Corners come in canonical order, so that the results do not depend on theirs.
+
 /// The area of a triangle in x and y.
 double plane_area(const Triangle& triangle);
 
-/// Adds what lies between two triangles, over what they have in common in x and y. That depends on
-/// both alone, not on the order of their corners: the overlay of two triangulations is the sum over
-/// all pairs. Off by roundings of the triangles' size, not of their distance from the origin.
+/// Adds what lies between two triangles, over what they have in common in x and y: between two
+/// triangulations lies the sum over all pairs. Off by roundings of the triangles' size, not of their
+/// distance from the origin.
 void add_between(const Triangle& first, const Triangle& second, VolumeSums& sums);
 
 /// Adds what lies between a triangle and a level.

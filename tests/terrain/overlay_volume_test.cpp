@@ -20,7 +20,9 @@ Triangle flat(double height) {
 VolumeSums between(const std::vector<Triangle>& first, const std::vector<Triangle>& second) {
   VolumeSums sums;
   for (const Triangle& a : first) {
-    for (const Triangle& b : second) add_between(a, b, sums);
+    for (const Triangle& b : second) {
+      add_between(in_canonical_order(a), in_canonical_order(b), sums);
+    }
   }
   return sums;
 }

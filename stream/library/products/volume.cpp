@@ -30,7 +30,7 @@ namespace {
 constexpr std::uint64_t kTriangleShare = 2;
 constexpr std::size_t kTrianglesAtATime = 4096;
 
-/// Gives the triangles of a mesh, in output coordinates, to whoever takes them.
+/// Gives the triangles of a mesh, in output coordinates and canonical order, to whoever takes them.
 class SurfaceWriter final : public SimplexSink<WorldPoint> {
  public:
   /// Called by many threads at once.
@@ -66,9 +66,9 @@ class SurfaceWriter final : public SimplexSink<WorldPoint> {
       triangles.reserve(end - begin);
       for (std::size_t t = begin; t < end; ++t) {
         const std::uint32_t* const v = &corners[3 * t];
-        const Triangle triangle{vertices[v[0]].numbers(), vertices[v[1]].numbers(),
-                                vertices[v[2]].numbers()};
-        if (max_edge_ && has_longer_edge<2>(in_canonical_order(triangle), *max_edge_)) {
+        const Triangle triangle = in_canonical_order(
+            {vertices[v[0]].numbers(), vertices[v[1]].numbers(), vertices[v[2]].numbers()});
+        if (max_edge_ && has_longer_edge<2>(triangle, *max_edge_)) {
           ++left_out_;
         } else {
           triangles.push_back(triangle);
