@@ -10,6 +10,7 @@
 #include <spillway/triangulate.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,5 +68,20 @@ SPILLWAY_API HeightReport measure_heights(const std::vector<std::string>& paths,
                                           const std::vector<int>& ground_classes, PointSink& sink,
                                           const HeightOptions& options,
                                           const TriangulateOptions& how, const Context& context);
+
+/// Points whose z is their height above the ground.
+struct PointsAboveGround {
+  std::unique_ptr<PointSource> points{};
+  HeightReport report{};
+};
+
+/// The same as points that can be triangulated, with what they carry: they lie in a scratch file
+/// until the source goes. `replace_z` makes no difference. Throws likewise.
+SPILLWAY_API PointsAboveGround open_above_ground(const std::vector<std::string>& paths,
+                                                 const PointOptions& points,
+                                                 const std::vector<int>& ground_classes,
+                                                 const HeightOptions& options,
+                                                 const TriangulateOptions& how,
+                                                 const Context& context);
 
 }  // namespace spillway

@@ -210,41 +210,59 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
   HeightReport report_;
 };
 
-/// Points that can be read only once, in a file that can be read again, for as long as it lives.
-class CopiedPoints {
+/// The path of a file among the scratch files, for as long as it lives.
+class ScratchPath {
  public:
-  CopiedPoints(const std::vector<std::string>& paths, const PointOptions& options,
-               const Context& context)
-      : scratch_(context.state().scratch(context)), beside_(scratch_->create("input")) {
-    path_ = std::filesystem::path(beside_->name()).replace_filename("input.spp").string();
-    PointOptions all;
-    all.dimension = 0;
-    all.format = options.format;
-    all.columns = options.columns;
-    all.skip_invalid = options.skip_invalid;
-    all.keep_withheld = true;
-    all.crs = options.crs;
-    all.foreign_crs = options.foreign_crs;
-    all.salvage = options.salvage;
-    all.skip_broken = options.skip_broken;
-    const auto source = open_points(paths, all, context);
-    const auto copy = create_points(path_, {}, context);
-    done_ = convert(*source, *copy, context);
+  ScratchPath(const Context& context, const std::string& name)
+      : scratch_(context.state().scratch(context)), beside_(scratch_->create(name)) {
+    path_ = beside_->name() + ".spp";
   }
-  ~CopiedPoints() { std::filesystem::remove(path_, ignored_); }
-  CopiedPoints(const CopiedPoints&) = delete;
-  CopiedPoints& operator=(const CopiedPoints&) = delete;
+  ~ScratchPath() { std::filesystem::remove(path_, ignored_); }
+  ScratchPath(const ScratchPath&) = delete;
+  ScratchPath& operator=(const ScratchPath&) = delete;
 
-  [[nodiscard]] const std::string& path() const { return path_; }
-  /// What became of all points.
-  [[nodiscard]] const PointConversion& copied() const { return done_; }
+  [[nodiscard]] const std::string& get() const { return path_; }
 
  private:
   std::shared_ptr<ScratchFolder> scratch_;
-  std::unique_ptr<ScratchFile> beside_;  ///< which the folder is there for
+  std::unique_ptr<ScratchFile> beside_;  ///< for which the folder is there
   std::string path_;
-  PointConversion done_;
   std::error_code ignored_;
+};
+
+/// Writes all points to a file, whatever filters there are. Returns what became of them.
+PointConversion copy_points(const std::vector<std::string>& paths, const PointOptions& options,
+                            const std::string& to, const Context& context) {
+  PointOptions all;
+  all.dimension = 0;
+  all.format = options.format;
+  all.columns = options.columns;
+  all.skip_invalid = options.skip_invalid;
+  all.keep_withheld = true;
+  all.crs = options.crs;
+  all.foreign_crs = options.foreign_crs;
+  all.salvage = options.salvage;
+  all.skip_broken = options.skip_broken;
+  const auto source = open_points(paths, all, context);
+  const auto copy = create_points(to, {}, context);
+  return convert(*source, *copy, context);
+}
+
+/// Points in a scratch file, which goes with them.
+class ScratchPoints final : public PointSource {
+ public:
+  ScratchPoints(std::unique_ptr<ScratchPath> path, const Context& context)
+      : path_(std::move(path)), points_(open_points({path_->get()}, {.dimension = 2}, context)) {}
+
+  [[nodiscard]] PointsHeader header() const override { return points_->header(); }
+  bool read(std::vector<spillway::Point<3>>& points) override { return points_->read(points); }
+  bool read(spillway::PointsBlock& block) override { return points_->read(block); }
+
+ private:
+  EnginePoints* engine_points() override { return OwnParts::of(*points_); }
+
+  std::unique_ptr<ScratchPath> path_;
+  std::unique_ptr<PointSource> points_;
 };
 
 /// Options of the ground among points: it is there whatever is wanted of the others.
@@ -313,9 +331,11 @@ HeightReport measure_heights(const std::vector<std::string>& paths, const PointO
   }
   PointOptions wanted = points;
   std::vector<std::string> files = paths;
-  std::optional<stream::CopiedPoints> copy;
+  std::optional<stream::ScratchPath> copy;
+  std::vector<SkippedFile> skipped;
   if (std::ranges::find(paths, "-") != paths.end()) {
-    files = {copy.emplace(paths, points, context).path()};
+    files = {copy.emplace(context, "input").get()};
+    skipped = stream::copy_points(paths, points, files[0], context).skipped_files;
     wanted.format = "spp";
     wanted.columns.clear();
     wanted.skip_invalid = wanted.salvage = wanted.skip_broken = false;
@@ -323,8 +343,25 @@ HeightReport measure_heights(const std::vector<std::string>& paths, const PointO
   const auto source = open_points(files, wanted, context);
   const auto ground = open_points(files, stream::ground_options(wanted, ground_classes), context);
   HeightReport report = measure_heights(*source, *ground, sink, options, how, context);
-  if (copy) report.points.skipped_files = copy->copied().skipped_files;
+  if (copy) report.points.skipped_files = skipped;
   return report;
+}
+
+PointsAboveGround open_above_ground(const std::vector<std::string>& paths,
+                                    const PointOptions& points,
+                                    const std::vector<int>& ground_classes,
+                                    const HeightOptions& options, const TriangulateOptions& how,
+                                    const Context& context) {
+  auto path = std::make_unique<stream::ScratchPath>(context, "heights");
+  HeightOptions of_heights = options;
+  of_heights.replace_z = true;
+  PointsAboveGround above;
+  {
+    const auto file = create_points(path->get(), {}, context);
+    above.report = measure_heights(paths, points, ground_classes, *file, of_heights, how, context);
+  }
+  above.points = std::make_unique<stream::ScratchPoints>(std::move(path), context);
+  return above;
 }
 
 }  // namespace spillway

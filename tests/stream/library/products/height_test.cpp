@@ -222,6 +222,29 @@ TEST_F(HeightAboveGround, LeavesWhatLongEdgesSpanWithoutGround) {
   EXPECT_EQ(report.without_ground, 1U);
 }
 
+TEST_F(HeightAboveGround, IsZOfPointsToBeTriangulated) {
+  const Context context(options());
+  const std::vector<Point<3>> points = {{0, 0, 10}, {9, 0, 10}, {0, 9, 10}, {9, 9, 10},
+                                        {4, 4, 17}, {3, 1, 9},  {20, 3, 12}};
+  AttributeColumns carried({{.name = "classification", .type = NumberType::kUint8}}, points.size());
+  for (std::size_t i = 0; i < 4; ++i) carried.values<std::uint8_t>("classification")[i] = 2;
+  convert(*points_in_memory(PointView<3>(points), carried),
+          *create_points(file("a.spp"), {}, context), context);
+  {
+    const PointsAboveGround above =
+        open_above_ground({file("a.spp")}, {}, {2}, {.min_height = 0.0}, {}, context);
+    EXPECT_EQ(above.report.without_ground, 1U);
+    EXPECT_EQ(above.report.other_heights, 2U);
+    EXPECT_EQ(all_of(*above.points),
+              (std::vector<Point<3>>{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {9, 9, 0}, {4, 4, 7}}));
+  }
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& left : std::filesystem::recursive_directory_iterator(folder_)) {
+    ++files;
+  }
+  EXPECT_EQ(files, 1U);  // the points
+}
+
 TEST_F(HeightAboveGround, RefusesOptionsThatCannotBe) {
   const std::vector<Point<3>> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   HeightsInMemory sink;
