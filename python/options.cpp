@@ -140,8 +140,8 @@ void bind_triangulate_options(py::module_& module) {
 }
 
 void bind_product_options(py::module_& module) {
-  py::class_<DemOptions>(module, "DemOptions")
-      .def(py::init())
+  py::class_<DemOptions> dem(module, "DemOptions");
+  dem.def(py::init())
       .def_property(
           "products",
           [](const DemOptions& options) {
@@ -164,6 +164,7 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("force_size", &DemOptions::many_pixels)
       .def_readwrite("like", &DemOptions::like)
       .def_readwrite("foreign_crs", &DemOptions::foreign_crs)
+      .def_readwrite("compute_edges", &DemOptions::compute_edges)
       .def_readwrite("azimuth", &DemOptions::azimuth)
       .def_readwrite("altitude", &DemOptions::altitude)
       .def_readwrite("z_factor", &DemOptions::z_factor)
@@ -171,6 +172,8 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("nodata", &DemOptions::nodata)
       .def_readwrite("compress", &DemOptions::compression)
       .def_readwrite("cog", &DemOptions::cloud_optimized);
+  bind_choice(dem, "gradient", &DemOptions::gradient, {"horn", "zevenbergen-thorne"});
+  bind_choice(dem, "type", &DemOptions::type, {"float32", "byte"});
   py::class_<ContourOptions>(module, "ContourOptions")
       .def(py::init())
       .def_readwrite("interval", &ContourOptions::interval)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/choices.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,7 +27,8 @@ struct RasterOptions {
   RasterGrid grid;
   std::vector<std::string> bands;  ///< descriptions, one a band
   float nodata = -9999;
-  std::string compression = "deflate";  ///< "deflate", "zstd", "none"
+  PixelType type = PixelType::kFloat32;  ///< bytes: values are rounded to 1 to 255; nodata is 0
+  std::string compression = "deflate";   ///< "deflate", "zstd", "none"
   /// With overviews, in the order that a Cloud Optimized GeoTIFF has. Beside `path` a second file
   /// is made and removed.
   bool cloud_optimized = false;
@@ -34,7 +37,7 @@ struct RasterOptions {
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< for overviews
 };
 
-/// A GeoTIFF of float32 bands being written. Not complete before finish(). Throws Failure with GDAL's
+/// A GeoTIFF being written. Not complete before finish(). Throws Failure with GDAL's
 /// reason. The same tiles in the same order give the same bytes for any number of threads.
 class Raster {
  public:

@@ -24,13 +24,36 @@ enum class ThinChoice {
   kCenter,   ///< the nearest one to the cell's centre
 };
 
-/// What a pixel of a DEM can tell of the terrain at its centre.
+/// What a pixel of a DEM can tell of the terrain at its centre: by the heights of the pixel and its
+/// eight neighbours, where nothing else is said.
 enum class DemProduct {
-  kHeight,     ///< of the triangle there
-  kSlope,      ///< its steepness in degrees
-  kAspect,     ///< where it falls to, in degrees from north; nothing where it is level
-  kHillshade,  ///< its brightness, 0 to 255
-  kDensity,    ///< vertices of the mesh in the pixel
+  kHeight,            ///< of the triangle there
+  kSlope,             ///< steepness in degrees
+  kAspect,            ///< where it falls to, in degrees from north; nothing where it is level
+  kHillshade,         ///< brightness, 1 to 255
+  kMultiHillshade,    ///< the same with light from four sides
+  kRoughness,         ///< the greatest difference of the nine heights
+  kTri,               ///< terrain ruggedness index
+  kTpi,               ///< topographic position index
+  kCurvature,         ///< in hundredths of a unit of height for a unit of x and y, squared
+  kProfileCurvature,  ///< along the slope, likewise
+  kPlanCurvature,     ///< across the slope, likewise
+  kFacetSlope,        ///< steepness of the triangle there, in degrees
+  kFacetAspect,       ///< where that falls to
+  kFacetHillshade,    ///< its brightness, 0 to 255
+  kDensity,           ///< vertices of the mesh in the pixel
+};
+
+/// How the gradient at a pixel comes from its neighbours.
+enum class GradientMethod {
+  kHorn,               ///< all eight, those beside it counted twice
+  kZevenbergenThorne,  ///< the four beside it
+};
+
+/// What a pixel of a file is.
+enum class PixelType {
+  kFloat32,
+  kByte,  ///< whole numbers from 1; 0 is no data
 };
 
 /// A plane across an axis: where one coordinate is the same everywhere.

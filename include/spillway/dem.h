@@ -18,6 +18,17 @@ namespace spillway {
 /// "height", "slope", ...: in the order of DemProduct.
 SPILLWAY_API const std::vector<std::string>& dem_product_names();
 
+/// What a product depends on.
+struct DemProductTraits {
+  bool of_neighbours = false;  ///< the heights of the nine pixels around: it may lack at edges
+  bool by_gradient = false;    ///< how the gradient comes from these
+  bool by_ground = false;      ///< how heights compare with distances: the factor of z
+  bool by_azimuth = false;     ///< where the light comes from
+  bool by_altitude = false;    ///< how high it stands; such products are shades, and fit bytes
+};
+
+SPILLWAY_API DemProductTraits traits_of(DemProduct product);
+
 /// What a raster is like. Lengths are in units of x and y.
 struct DemOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
@@ -30,13 +41,17 @@ struct DemOptions {
   bool foreign_crs = false;  ///< though it has another coordinate system
   double azimuth = 315;      ///< of a hillshade's light, in degrees from north
   double altitude = 45;      ///< its height above the horizon, in degrees
-  /// Of slope, aspect and hillshade: what heights are multiplied by, to have the unit of x and y.
-  /// Nothing: by what the coordinate system tells of its units.
+  GradientMethod gradient = GradientMethod::kHorn;
+  /// Products of neighbours also where some of these have no data, or lie beyond the raster.
+  bool compute_edges = false;
+  /// Of products that compare heights with distances: what heights are multiplied by, to have the
+  /// unit of x and y. Nothing: by what the coordinate system tells of its units.
   std::optional<double> z_factor{};
-  std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
-  float nodata = -9999;
-  std::string compression = "deflate";  ///< or "zstd", "none"
-  bool cloud_optimized = false;         ///< with overviews
+  std::optional<double> max_edge{};      ///< of a mesh, leave out triangles with a longer edge
+  float nodata = -9999;                  ///< of float32; of bytes it is 0
+  PixelType type = PixelType::kFloat32;  ///< bytes are for shades
+  std::string compression = "deflate";   ///< or "zstd", "none"
+  bool cloud_optimized = false;          ///< with overviews
 };
 
 /// What became of a raster.
@@ -60,7 +75,7 @@ class SPILLWAY_API DemSink : public MeshSink {
   [[nodiscard]] virtual const DemReport& report() const = 0;
 };
 
-/// A GeoTIFF of float32 bands, interpolated linearly within the triangles. It gets its name when it
+/// A GeoTIFF, interpolated linearly within the triangles. It gets its name when it
 /// is complete. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
 /// options that cannot be, kOutOfBudget for a memory limit below 64 MiB, kInputOutput; begin()
 /// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, and kTooLarge

@@ -59,6 +59,8 @@ def dem(
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
+    gradient: str | None = None,
+    compute_edges: bool = False,
     mesh_format: str | None = None,
     **options: Unpack[DemOptions],
 ) -> Raster:
@@ -79,7 +81,10 @@ def dem(
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
+    gradient: str | None = None,
+    compute_edges: bool = False,
     nodata: float | None = None,
+    type: str | None = None,
     compress: str | None = None,
     cog: bool = False,
     mesh_format: str | None = None,
@@ -102,7 +107,10 @@ def dem(
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
+    gradient: str | None = None,
+    compute_edges: bool = False,
     nodata: float | None = None,
+    type: str | None = None,
     compress: str | None = None,
     cog: bool = False,
     mesh_format: str | None = None,
@@ -129,14 +137,23 @@ def dem(
     like : path, optional
         Put pixels where this raster has them.
     product : str or sequence of str, optional
-        ``"height"``, ``"slope"``, ``"aspect"``, ``"hillshade"`` or ``"density"``; several are bands.
+        ``"height"``, ``"slope"``, ``"aspect"``, ``"hillshade"``, ``"multi-hillshade"``,
+        ``"roughness"``, ``"tri"``, ``"tpi"``, ``"curvature"``, ``"profile-curvature"``,
+        ``"plan-curvature"``, ``"facet-slope"``, ``"facet-aspect"``, ``"facet-hillshade"`` or
+        ``"density"``; several are bands.
     azimuth, altitude : float, optional
         Where a hillshade's light comes from, and its height above the horizon, in degrees; 315 and
         45 by default.
     z_factor : float, optional
-        Multiply heights by this for slope, aspect and hillshade. By default as units tell.
+        Multiply heights by this for slopes, shades and curvatures. By default as units tell.
+    gradient : {"horn", "zevenbergen-thorne"}, optional
+        How slope, aspect and hillshade come from a pixel's neighbours.
+    compute_edges : bool, optional
+        Make slopes and the like also where neighbours have no data.
     nodata : float, optional
         Of a file, the value of pixels without data; -9999 by default.
+    type : {"float32", "byte"}, optional
+        Of a file's pixels; bytes are for hillshades, with 0 for no data.
     compress : {"deflate", "zstd", "none"}, optional
         Compression of a file.
     cog : bool, optional
@@ -160,9 +177,14 @@ def dem(
     how = _spillway.DemOptions()
     put(how, "product", product, _put_products)
     products = how.products
-    _check_products(
-        products, {"azimuth": azimuth, "altitude": altitude, "z_factor": z_factor}, options
-    )
+    surface = {
+        "azimuth": azimuth,
+        "altitude": altitude,
+        "z_factor": z_factor,
+        "gradient": gradient,
+        "compute_edges": compute_edges,
+    }
+    _check_products(products, surface, options)
     if like is None:
         if resolution is None:
             raise InvalidArgumentError("resolution, the side of a pixel, is missing (or like)")
@@ -179,12 +201,14 @@ def dem(
         )
         how.like = as_path(like, "like")
         how.foreign_crs = bool(options.get("force_crs"))
-    put_all(how, {"azimuth": azimuth, "altitude": altitude, "z_factor": z_factor})
+    put_all(how, surface)
     put_all(how, {"max_edge": options.get("max_edge")})
-    of_files = {"nodata": nodata, "compress": compress, "cog": cog}
+    of_files = {"nodata": nodata, "type": type, "compress": compress, "cog": cog}
     run = make_run(options)
     origin = mesh_origin(run, inputs, 2, mesh_format, options)
     if output is not None:
+        if type == "byte":
+            refuse(of_files, ["nodata"], "on bytes, in which 0 is no data")
         put_all(how, of_files)
         report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
         _warn_of_empty(report)
@@ -344,12 +368,32 @@ def _put_products(target: _spillway.DemOptions, value: str | Sequence[str]) -> N
     target.products = [value] if isinstance(value, str) else list(value)
 
 
-def _check_products(products: list[str], light: dict[str, Any], options: Any) -> None:
+_GRADIENTS = {"slope", "aspect", "hillshade", "multi-hillshade"}
+_CURVATURES = {"curvature", "profile-curvature", "plan-curvature"}
+_FACETS = {"facet-slope", "facet-aspect", "facet-hillshade"}
+
+
+def _check_products(products: list[str], surface: dict[str, Any], options: Any) -> None:
     """Refuse options that make no difference to the products."""
-    if "hillshade" not in products:
-        refuse(light, ["azimuth", "altitude"], "without hillshade among the products")
-    if not {"slope", "aspect", "hillshade"} & set(products):
-        refuse(light, ["z_factor"], "without slope, aspect or hillshade among the products")
+    made = set(products)
+    if not {"hillshade", "facet-hillshade"} & made:
+        refuse(surface, ["azimuth"], "without hillshade among the products")
+    if not {"hillshade", "facet-hillshade", "multi-hillshade"} & made:
+        refuse(surface, ["altitude"], "without hillshade among the products")
+    if not (_GRADIENTS | _CURVATURES | _FACETS) & made:
+        refuse(
+            surface,
+            ["z_factor"],
+            "without slope, aspect, hillshade or curvature among the products",
+        )
+    if not _GRADIENTS & made:
+        refuse(surface, ["gradient"], "without slope, aspect or hillshade among the products")
+    if made <= _FACETS | {"height", "density"}:
+        refuse(
+            surface,
+            ["compute_edges"],
+            "without a product of a pixel's neighbours, like slope",
+        )
     if products == ["density"]:
         refuse(options, ["heights", "max_edge"], "on density, which counts vertices")
 

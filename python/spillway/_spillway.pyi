@@ -120,11 +120,14 @@ class DemOptions:
     force_size: bool
     like: bytes | str
     foreign_crs: bool
+    gradient: str
+    compute_edges: bool
     azimuth: float
     altitude: float
     z_factor: float | None
     max_edge: float | None
     nodata: float
+    type: str
     compress: str
     cog: bool
 

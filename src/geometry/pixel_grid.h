@@ -16,13 +16,10 @@ struct PixelGrid {
 
   bool operator==(const PixelGrid&) const = default;
 
-  /// The centre of a pixel, evaluated in double in exactly this way.
-  [[nodiscard]] double centre_x(std::uint32_t column) const {
-    return west + (column + 0.5) * resolution;
-  }
-  [[nodiscard]] double centre_y(std::uint32_t row) const {
-    return north - (row + 0.5) * resolution;
-  }
+  /// The centre of a pixel, evaluated in double in exactly this way. Columns and rows are whole
+  /// numbers, and may lie beyond the grid.
+  [[nodiscard]] double centre_x(double column) const { return west + (column + 0.5) * resolution; }
+  [[nodiscard]] double centre_y(double row) const { return north - (row + 0.5) * resolution; }
 };
 
 }  // namespace spillway::geometry

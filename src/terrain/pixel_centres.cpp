@@ -18,21 +18,22 @@ double on_lattice(const IntegerLattice& lattice, int axis, double world) {
 
 }  // namespace
 
-PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice)
-    : x_(grid.columns),
-      y_(grid.rows),
+PixelCentres::PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice,
+                           std::uint32_t margin)
+    : x_(std::size_t{grid.columns} + 2 * margin),
+      y_(std::size_t{grid.rows} + 2 * margin),
       per_x_((lattice ? lattice->scale[0] : 1) / grid.resolution),
       per_y_((lattice ? lattice->scale[1] : 1) / grid.resolution) {
-  for (std::uint32_t c = 0; c < grid.columns; ++c) {
-    const double x = grid.centre_x(c);
+  for (std::size_t c = 0; c < x_.size(); ++c) {
+    const double x = grid.centre_x(static_cast<double>(c) - margin);
     x_[c] = lattice ? on_lattice(*lattice, 0, x) : x;
     if (c > 0 && !(x_[c] > x_[c - 1])) {
       throw InvalidArgument(
           "the resolution is too fine for coordinates so large; give a coarser one");
     }
   }
-  for (std::uint32_t r = 0; r < grid.rows; ++r) {
-    const double y = grid.centre_y(r);
+  for (std::size_t r = 0; r < y_.size(); ++r) {
+    const double y = grid.centre_y(static_cast<double>(r) - margin);
     y_[r] = lattice ? on_lattice(*lattice, 1, y) : y;
     if (r > 0 && !(y_[r] < y_[r - 1])) {
       throw InvalidArgument(

@@ -17,8 +17,10 @@ namespace spillway::terrain {
 class PixelCentres {
  public:
   /// Throws InvalidArgument if the resolution is too fine for doubles to tell neighbours apart. The
-  /// lattice's scales must be positive.
-  PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice);
+  /// lattice's scales must be positive. With a margin so many rows and columns beyond each edge of
+  /// the grid count as well, so that its own begin with that number.
+  PixelCentres(const PixelGrid& grid, const std::optional<IntegerLattice>& lattice,
+               std::uint32_t margin = 0);
 
   [[nodiscard]] std::span<const double> x() const { return x_; }  ///< by column, ascending
   [[nodiscard]] std::span<const double> y() const { return y_; }  ///< by row, descending

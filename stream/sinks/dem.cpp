@@ -52,65 +52,58 @@ std::uint64_t tiles_in(const PixelWindow& window) {
   return tiles(window.row_begin, window.row_end) * tiles(window.column_begin, window.column_end);
 }
 
+struct Steps {
+  std::uint32_t begin;
+  std::uint32_t end;
+};
+
+/// Cuts rows or columns of centres where tiles end; the first `margin` of all are in none.
+std::vector<Steps> tile_steps(std::uint32_t begin, std::uint32_t end, std::uint32_t margin) {
+  std::vector<Steps> steps;
+  while (begin < end) {
+    const std::uint32_t tile = begin < margin ? 0 : (begin - margin) / kRasterTile;
+    steps.push_back({begin, std::min(end, (tile + 1) * kRasterTile + margin)});
+    begin = steps.back().end;
+  }
+  return steps;
+}
+
 /// Decided, but nothing: it must be told from what is still undecided.
 constexpr float kUndefined = std::numeric_limits<float>::infinity();
 
 /// What is the same all over a triangle; nothing for what is not.
 float value_of(DemProduct product, const Gradient& gradient, const Point<3>& light) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  if (product == DemProduct::kSlope) value = slope_of(gradient);
-  if (product == DemProduct::kAspect) value = aspect_of(gradient);
-  if (product == DemProduct::kHillshade) value = hillshade_of(gradient, light);
+  if (product == DemProduct::kFacetSlope) value = slope_of(gradient);
+  if (product == DemProduct::kFacetAspect) value = aspect_of(gradient);
+  if (product == DemProduct::kFacetHillshade) value = hillshade_of(gradient, light);
   return std::isnan(value) ? kUndefined : static_cast<float>(value);
 }
-
-/// The values that readers take for nodata, and what is written in their place. GDAL compares
-/// floats but for some roundings (its ARE_REAL_EQUAL()).
-struct NodataNeighbourhood {
-  explicit NodataNeighbourhood(float nodata) : lowest(nodata), highest(nodata) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    const auto is_taken = [nodata](float value) {
-      constexpr double kShare = 2.0 * std::numeric_limits<float>::epsilon();
-      return std::abs(double{value} - nodata) < kShare * std::abs(double{value} + nodata);
-    };
-    while (is_taken(std::nextafter(lowest, -kInfinity))) {
-      lowest = std::nextafter(lowest, -kInfinity);
-    }
-    while (is_taken(std::nextafter(highest, kInfinity))) {
-      highest = std::nextafter(highest, kInfinity);
-    }
-    replacement = std::nextafter(highest, kInfinity);
-    if (std::isinf(replacement)) replacement = std::nextafter(lowest, -kInfinity);
-  }
-
-  float lowest;
-  float highest;
-  float replacement;  ///< the next value that is told from nodata
-};
 
 }  // namespace
 
 /// What one task needs while it paints.
 struct Dem::Work {
-  Work(RasterStore& store, std::size_t products) : hand(store), values(products) {}
+  Work(RasterStore& store, std::size_t layers) : hand(store), values(layers) {}
   RasterStore::Hand hand;
   std::vector<PixelRun> runs;
-  std::vector<float> values;  ///< of the triangle, by product; those that vary in it unused
+  std::vector<float> values;  ///< of the triangle, by layer; those that vary in it unused
 };
 
 Dem::Dem(DemSinkOptions options, const std::optional<IntegerLattice>& lattice,
          ScratchFolder& scratch)
     : options_(std::move(options)),
+      layers_(layers_of(options_.products)),
       lattice_(lattice),
       on_lattice_(lattice && lattice->scale[0] > 0 && lattice->scale[1] > 0),
       light_direction_(direction_of(options_.light)),
       scratch_(scratch) {
-  const std::uint64_t least = RasterStore::least_memory(options_.products.size(), options_.threads);
+  const std::uint64_t least = RasterStore::least_memory(layers_.size(), options_.threads);
   if (options_.memory < least) {
     throw TooSmallLimit(
         fmt::format("the memory limit is too small: {} of it are for pixels, and {} threads "
-                    "with {} products need {}",
-                    memory_size_text(options_.memory), options_.threads, options_.products.size(),
+                    "with {} products to paint need {}",
+                    memory_size_text(options_.memory), options_.threads, layers_.size(),
                     memory_size_text(least)),
         {.remedy = Remedy::kMemory});
   }
@@ -130,23 +123,22 @@ void Dem::begin(const Box<2>& extent) { begin(choose_grid(options_.grid, in_outp
 
 void Dem::begin(const PixelGrid& grid) {
   grid_ = grid;
-  tiles_across_ = (grid_.columns + kRasterTile - 1) / kRasterTile;
-  tiles_down_ = (grid_.rows + kRasterTile - 1) / kRasterTile;
-  const std::uint64_t index = PixelCentres::bytes(grid_) + std::uint64_t{tiles_across_} *
-                                                               tiles_down_ * kIndexBytes *
-                                                               options_.products.size();
+  tiles_ = TileLayout(grid_, has_neighbours(options_.products));
+  const std::uint64_t bands = std::max(options_.products.size(), layers_.size());
+  const std::uint64_t index =
+      PixelCentres::bytes(grid_) + tiles_.count() * kIndexBytes * bands + DemOutput::bytes(tiles_);
   if (index > options_.memory / 2) {
     throw TooSmallLimit(fmt::format("a raster of {} x {} pixels needs {} for its index alone",
                                     grid_.columns, grid_.rows, memory_size_text(index)),
                         {.remedy = Remedy::kRasterMemory});
   }
-  centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt);
+  centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt, tiles_.margin);
   std::vector<PixelRule> rules;
-  for (const DemProduct product : options_.products) rules.push_back(rule_of(product));
+  for (const DemProduct product : layers_) rules.push_back(rule_of(product));
   RasterStore::PixelsOfTile wanted;
   if (closes_tiles()) {
     wanted = [this](std::uint64_t number) {
-      const auto [rows, columns] = size_of_tile(number);
+      const auto [rows, columns] = tiles_.size(number - tiles_.ring_tiles());
       return rows * columns;
     };
   }
@@ -158,7 +150,7 @@ void Dem::begin(const PixelGrid& grid) {
 /// output coordinates may overlap by roundings.
 bool Dem::closes_tiles() const {
   return options_.closes_tiles && (on_lattice_ || !lattice_) &&
-         std::ranges::find(options_.products, DemProduct::kDensity) == options_.products.end();
+         std::ranges::find(layers_, DemProduct::kDensity) == layers_.end();
 }
 
 PlacedPoint Dem::placed(const LatticePoint& vertex) const {
@@ -173,10 +165,6 @@ std::vector<PlacedPoint> Dem::placed(std::span<const LatticePoint> vertices) con
   return result;
 }
 
-std::uint64_t Dem::tile_number(std::uint32_t row, std::uint32_t column) const {
-  return std::uint64_t{row / kRasterTile} * tiles_across_ + column / kRasterTile;
-}
-
 void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint32_t> corners) {
   struct Large {
     Triangle canonical;
@@ -189,7 +177,7 @@ void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint
     for (std::size_t v = begin; v < end; ++v) windows[v] = centres_around(*centres_, vertices[v]);
   };
   const auto paint_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
-    Work work(*store_, options_.products.size());
+    Work work(*store_, layers_.size());
     for (std::size_t t = begin; t < end; ++t) {
       const std::uint32_t* const v = &corners[3 * t];
       const PixelWindow window = window_of(windows[v[0]], windows[v[1]], windows[v[2]]);
@@ -228,22 +216,18 @@ Triangle Dem::in_output(const Triangle& placed) const {
 
 /// Paints a triangle of many tiles: each tile is held once, and many threads work on it.
 void Dem::paint_large(const Triangle& canonical, const PixelWindow& whole) {
-  const std::uint32_t first_row = whole.row_begin / kRasterTile;
-  const std::uint32_t first_column = whole.column_begin / kRasterTile;
-  const std::size_t across = (whole.column_end - 1) / kRasterTile - first_column + 1;
-  const std::size_t down = (whole.row_end - 1) / kRasterTile - first_row + 1;
-  parallel_for(across * down, 1, [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
-    Work work(*store_, options_.products.size());
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto row = static_cast<std::uint32_t>((first_row + t / across) * kRasterTile);
-      const auto column = static_cast<std::uint32_t>((first_column + t % across) * kRasterTile);
-      paint_pixels(
-          canonical,
-          {std::max(row, whole.row_begin), std::min(row + kRasterTile, whole.row_end),
-           std::max(column, whole.column_begin), std::min(column + kRasterTile, whole.column_end)},
-          work);
-    }
-  });
+  const std::vector<Steps> down = tile_steps(whole.row_begin, whole.row_end, tiles_.margin);
+  const std::vector<Steps> across = tile_steps(whole.column_begin, whole.column_end, tiles_.margin);
+  parallel_for(
+      across.size() * down.size(), 1,
+      [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
+        Work work(*store_, layers_.size());
+        for (std::size_t t = begin; t < end; ++t) {
+          const Steps& rows = down[t / across.size()];
+          const Steps& columns = across[t % across.size()];
+          paint_pixels(canonical, {rows.begin, rows.end, columns.begin, columns.end}, work);
+        }
+      });
 }
 
 void Dem::paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work) {
@@ -254,7 +238,7 @@ void Dem::paint_pixels(const Triangle& canonical, const PixelWindow& window, Wor
   const TrianglePlane plane(canonical, scale);
   const Gradient gradient = on_ground(plane, canonical);
   for (std::size_t b = 0; b < work.values.size(); ++b) {
-    work.values[b] = value_of(options_.products[b], gradient, light_direction_);
+    work.values[b] = value_of(layers_[b], gradient, light_direction_);
   }
   for (const PixelRun& run : work.runs) paint_run(run, plane, work);
 }
@@ -270,20 +254,43 @@ Gradient Dem::on_ground(const TrianglePlane& plane, const Triangle& canonical) c
   return {gradient[0] * ground.height / lengths[0], gradient[1] * ground.height / lengths[1]};
 }
 
-void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work) {
+/// Heights just beyond the raster's edges; what remains of the run is within.
+void Dem::paint_ring(PixelRun& run, const TrianglePlane& plane, Work& work) {
+  const auto heights = std::ranges::find(layers_, DemProduct::kHeight) - layers_.begin();
+  const auto paint_one = [&](std::uint32_t column) {
+    const std::uint64_t pixel = tiles_.ring_pixel(run.row, column);
+    float* const tile = work.hand.tile(pixel / RasterStore::kTilePixels);
+    set_pixel(
+        tile[static_cast<std::size_t>(heights) * RasterStore::kTilePixels +
+             pixel % RasterStore::kTilePixels],
+        static_cast<float>(plane.at(run.relation, centres_->x()[column], centres_->y()[run.row])));
+  };
+  if (run.row == 0 || run.row > grid_.rows) {
+    for (; run.begin < run.end; ++run.begin) paint_one(run.begin);
+    return;
+  }
+  if (run.begin == 0) paint_one(run.begin++);
+  if (run.end > grid_.columns + 1 && run.begin < run.end) paint_one(--run.end);
+}
+
+void Dem::paint_run(PixelRun run, const TrianglePlane& plane, Work& work) {
+  if (tiles_.margin > 0) paint_ring(run, plane, work);
   const double y = centres_->y()[run.row];
   const std::span<const double> x = centres_->x();
+  const std::uint32_t row = run.row - tiles_.margin;
   for (std::uint32_t begin = run.begin; begin < run.end;) {
-    const std::uint32_t end = std::min(run.end, (begin / kRasterTile + 1) * kRasterTile);
-    float* pixels = work.hand.tile(tile_number(run.row, begin));
+    const std::uint32_t column = begin - tiles_.margin;
+    const std::uint32_t end =
+        std::min(run.end, (column / kRasterTile + 1) * kRasterTile + tiles_.margin);
+    float* pixels = work.hand.tile(tiles_.stored(tiles_.number(row, column)));
     if (pixels == nullptr) {
       begin = end;
       continue;
     }
-    pixels += run.row % kRasterTile * kRasterTile + begin % kRasterTile;
+    pixels += row % kRasterTile * kRasterTile + column % kRasterTile;
     if (run.owned) work.hand.decide(end - begin);
-    for (std::size_t b = 0; b < options_.products.size(); ++b) {
-      const DemProduct product = options_.products[b];
+    for (std::size_t b = 0; b < layers_.size(); ++b) {
+      const DemProduct product = layers_[b];
       if (product == DemProduct::kHeight && run.relation == TriangleRelation::kInside) {
         for (std::uint32_t c = begin; c < end; ++c) {
           set_pixel(pixels[c - begin], static_cast<float>(plane.inside(x[c], y)));
@@ -304,18 +311,17 @@ void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work)
 }
 
 void Dem::count(std::span<const PlacedPoint> vertices) {
-  const auto found =
-      std::find(options_.products.begin(), options_.products.end(), DemProduct::kDensity);
-  if (found == options_.products.end()) return;
-  const auto band = static_cast<std::size_t>(found - options_.products.begin());
+  const auto found = std::ranges::find(layers_, DemProduct::kDensity);
+  if (found == layers_.end()) return;
+  const auto band = static_cast<std::size_t>(found - layers_.begin());
   const auto count_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
-    Work work(*store_, options_.products.size());
+    Work work(*store_, layers_.size());
     for (const PlacedPoint& vertex : vertices.subspan(begin, end - begin)) {
       const auto column =
           column_of(grid_, on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
       const auto row = row_of(grid_, on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
       if (!column || !row) continue;
-      float* const pixels = work.hand.tile(tile_number(*row, *column));
+      float* const pixels = work.hand.tile(tiles_.stored(tiles_.number(*row, *column)));
       put_pixel(pixels[band * RasterStore::kTilePixels +
                        std::size_t{*row % kRasterTile} * kRasterTile + *column % kRasterTile],
                 1, PixelRule::kSum, true);
@@ -330,46 +336,14 @@ RasterOptions Dem::raster_options() const {
   for (const DemProduct product : options_.products) {
     raster.bands.push_back(dem_product_names()[static_cast<std::size_t>(product)]);
     // The mean of 359 and 1 is no direction.
-    if (product == DemProduct::kAspect) raster.averaged_overviews = false;
+    if (product == DemProduct::kAspect || product == DemProduct::kFacetAspect) {
+      raster.averaged_overviews = false;
+    }
   }
   raster.nodata = options_.nodata;
   raster.threads = options_.threads;
   raster.memory = options_.memory;
   return raster;
-}
-
-/// How much of a tile is in the raster.
-Dem::TileSize Dem::size_of_tile(std::uint64_t number) const {
-  const auto row = static_cast<std::uint32_t>(number / tiles_across_ * kRasterTile);
-  const auto column = static_cast<std::uint32_t>(number % tiles_across_ * kRasterTile);
-  return {std::min(kRasterTile, grid_.rows - row), std::min(kRasterTile, grid_.columns - column)};
-}
-
-/// Takes a tile from the store and makes of it what is written.
-void Dem::finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
-                      std::vector<float>& pixels) {
-  store_->take(number, pixels, others);
-  const auto [rows, columns] = size_of_tile(number);
-  std::uint64_t with_data = 0;
-  const NodataNeighbourhood nodata(options_.nodata);
-  for (std::size_t b = 0; b < options_.products.size(); ++b) {
-    const bool density = options_.products[b] == DemProduct::kDensity;
-    const auto band =
-        std::span(pixels).subspan(b * RasterStore::kTilePixels, RasterStore::kTilePixels);
-    for (std::size_t i = 0; i < band.size(); ++i) {
-      float& pixel = band[i];
-      if (density && std::isnan(pixel)) pixel = 0;
-      const bool is_in = i / kRasterTile < rows && i % kRasterTile < columns;
-      if (!is_in || !std::isfinite(pixel)) {
-        pixel = options_.nodata;
-        continue;
-      }
-      if (b == 0) ++with_data;
-      if (pixel >= nodata.lowest && pixel <= nodata.highest) pixel = nodata.replacement;
-      pixel += 0.0F;  // -0 becomes 0
-    }
-  }
-  pixels_with_data_ += with_data;
 }
 
 void Dem::save(StateWriter& state) {
@@ -393,41 +367,8 @@ void Dem::restore(StateReader& state) {
 
 void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
                 const OtherTiles& others) {
-  const std::uint64_t tiles = std::uint64_t{tiles_across_} * tiles_down_;
-  const std::size_t slots = options_.threads + 2;
-  struct Slot {
-    std::uint64_t number = 0;
-    std::vector<std::vector<std::byte>> others;
-    std::vector<float> pixels;
-  };
-  std::vector<Slot> in_work(slots);
-  std::uint64_t next = 0;
-  std::uint64_t done = 0;
-  const auto source = [&](std::size_t slot) {
-    if (next == tiles) return false;
-    if (others) in_work[slot].others = others(next);
-    in_work[slot].number = next++;
-    return true;
-  };
-  const auto take = [&](std::size_t slot) {
-    finish_tile(in_work[slot].number, in_work[slot].others, in_work[slot].pixels);
-  };
-  const auto write_tile = [&](std::size_t slot) {
-    const std::uint64_t number = in_work[slot].number;
-    const std::vector<float>& pixels = in_work[slot].pixels;
-    for (std::size_t b = 0; b < options_.products.size(); ++b) {
-      raster.write_tile(
-          b, static_cast<std::uint32_t>(number % tiles_across_),
-          static_cast<std::uint32_t>(number / tiles_across_),
-          std::span(pixels).subspan(b * RasterStore::kTilePixels, RasterStore::kTilePixels));
-    }
-    const auto [rows, columns] = size_of_tile(number);
-    done += std::uint64_t{rows} * columns;
-    progress(done);
-  };
-  const std::vector<PipelineStep> steps = {{.in_order = false, .work = take},
-                                           {.in_order = true, .work = write_tile}};
-  run_pipeline(slots, source, steps);
+  DemOutput output(options_, layers_, tiles_, *store_);
+  pixels_with_data_ = output.write(raster, progress, others);
 }
 
 }  // namespace spillway::stream

@@ -1,45 +1,25 @@
 #pragma once
 // Rasters of a triangulated terrain, made while its triangles pass by.
 
-#include <spillway/choices.h>
-
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "formats/gdal/raster.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
-#include "src/terrain/grid_choice.h"
-#include "src/terrain/ground_scale.h"
 #include "src/terrain/pixel_centres.h"
 #include "src/terrain/pixel_values.h"
+#include "stream/sinks/dem_output.h"
+#include "stream/sinks/dem_sink_options.h"
 #include "stream/sinks/raster_store.h"
 
 namespace spillway::stream {
-
-struct DemSinkOptions {
-  std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
-  GridRequest grid{};
-  Light light{};
-  GroundScale ground{};              ///< of slope, aspect and hillshade
-  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
-  float nodata = -9999;
-  std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
-  unsigned threads = 1;      ///< of which each may have a hand on the pixels
-  /// A tile of pixels is closed as soon as each has been painted by the triangle that owns it. For
-  /// triangles that do not overlap, all of which are painted here.
-  bool closes_tiles = false;
-  /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
-  /// order; by many threads. Those in whose box no pixel has its centre are passed over.
-  std::function<void(const Triangle&)> outline{};
-};
 
 /// The raster while it is made. Every pixel is a function of the triangles at its centre, so that
 /// neither their order nor threads matter.
@@ -71,9 +51,6 @@ class Dem {
   [[nodiscard]] const PixelGrid& grid() const { return grid_; }
   [[nodiscard]] RasterOptions raster_options() const;
 
-  /// What another Dem of the same grid has of a tile; called tile by tile, in order.
-  using OtherTiles = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
-
   /// Writes all tiles, row by row, and forgets them. `progress` is told how many of the raster's
   /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
   /// which have painted other triangles, `others` gives what they have.
@@ -100,34 +77,26 @@ class Dem {
 
  private:
   struct Work;
-  struct TileSize {
-    std::uint32_t rows;
-    std::uint32_t columns;
-  };
-
   [[nodiscard]] PlacedPoint placed(const LatticePoint& vertex) const;
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   [[nodiscard]] Gradient on_ground(const TrianglePlane& plane, const Triangle& canonical) const;
-  void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
+  void paint_run(PixelRun run, const TrianglePlane& plane, Work& work);
+  void paint_ring(PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
-  void finish_tile(std::uint64_t number, std::span<const std::vector<std::byte>> others,
-                   std::vector<float>& pixels);
   [[nodiscard]] bool closes_tiles() const;
-  [[nodiscard]] TileSize size_of_tile(std::uint64_t number) const;
-  [[nodiscard]] std::uint64_t tile_number(std::uint32_t row, std::uint32_t column) const;
 
   const DemSinkOptions options_;
+  const std::vector<DemProduct> layers_;  ///< what is painted
   const std::optional<IntegerLattice> lattice_;
   const bool on_lattice_;  ///< triangles are painted on it
   const Point<3> light_direction_;
   ScratchFolder& scratch_;
   PixelGrid grid_;
-  std::uint32_t tiles_across_ = 0;
-  std::uint32_t tiles_down_ = 0;
+  TileLayout tiles_;
   std::optional<PixelCentres> centres_;
   std::optional<RasterStore> store_;
-  std::atomic<std::uint64_t> pixels_with_data_ = 0;
+  std::uint64_t pixels_with_data_ = 0;
   std::atomic<std::uint64_t> left_out_ = 0;
 };
 

@@ -308,6 +308,22 @@ void RasterStore::take(std::uint64_t number, std::vector<float>& pixels,
   }
 }
 
+void RasterStore::put_back(std::uint64_t number, std::vector<float>& pixels) {
+  const std::vector<Run> runs = runs_of(pixels);
+  if (runs.empty()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (has_room()) {
+      Tile& tile = tiles_[number];
+      tile.pixels = std::exchange(pixels, {});
+      tile.closed = true;
+      ++in_memory_;
+      return;
+    }
+  }
+  append_encoded(number, encode(pixels, runs));
+}
+
 std::vector<std::byte> RasterStore::take_tile(std::uint64_t number) {
   std::vector<float> pixels;
   take_as_it_is(number, pixels);

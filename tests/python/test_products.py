@@ -24,6 +24,13 @@ class Dem(InFolder):
                 "resolution": 3, "product": ["height", "slope", "hillshade"],
                 "azimuth": 90, "altitude": 30, "z_factor": 2,
             },
+            "--resolution 3 --product slope,tri --gradient zevenbergen-thorne --compute-edges": {
+                "resolution": 3, "product": ["slope", "tri"],
+                "gradient": "zevenbergen-thorne", "compute_edges": True,
+            },
+            "--resolution 3 --product hillshade --type byte": {
+                "resolution": 3, "product": "hillshade", "type": "byte",
+            },
             f"--resolution 5 --bounds {box}": {"resolution": 5, "bounds": corners},
             f"--resolution 5 --clip-bounds {box}": {"resolution": 5, "clip_bounds": corners},
             "--resolution 3 --cog --max-edge 20": {"resolution": 3, "cog": True, "max_edge": 20},
@@ -81,6 +88,8 @@ class Dem(InFolder):
             ("resolution, the side of a pixel, is missing", {}),
             ("azimuth has no effect", {"resolution": 1, "azimuth": 3}),
             ("z_factor has no effect", {"resolution": 1, "z_factor": 3}),
+            ("gradient has no effect", {"resolution": 1, "gradient": "horn"}),
+            ("compute_edges has no effect", {"resolution": 1, "compute_edges": True}),
             ("max_edge has no effect", {"resolution": 1, "product": "density", "max_edge": 3}),
             (
                 "force_size has no effect with bounds",

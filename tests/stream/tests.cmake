@@ -50,7 +50,7 @@ spillway_test(point_input_test unit
   LIBS spillway_stream fmt::fmt)
 
 spillway_test(dem_test property
-  SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_oracle_test.cpp
+  SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_neighbours_test.cpp stream/sinks/dem_oracle_test.cpp
   LIBS spillway_stream_ranks
   TIMEOUT 300)
 

@@ -1,11 +1,13 @@
 #include "tools/batch/job_steps.h"
 
 #include <fmt/format.h>
+#include <spillway/dem.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -17,21 +19,8 @@
 namespace spillway::command {
 namespace {
 
-/// What the first part of a kind like "slope.tif" stands for.
-struct Product {
-  std::string_view name;
-  std::string_view subcommand;
-  std::string_view option;  ///< and its value; may be empty
-  std::string_view value;
-};
-
-constexpr std::array kProducts = {Product{"dem", "dem", "", ""},
-                                  Product{"slope", "dem", "--product", "slope"},
-                                  Product{"aspect", "dem", "--product", "aspect"},
-                                  Product{"hillshade", "dem", "--product", "hillshade"},
-                                  Product{"density", "dem", "--product", "density"},
-                                  Product{"contour", "contour", "", ""},
-                                  Product{"render", "render", "", ""}};
+/// What the first part of a kind like "dem.tif" may be, besides the products of a raster.
+constexpr std::array<std::string_view, 3> kSubcommands = {"dem", "contour", "render"};
 
 /// An option that a subcommand cannot do without, unless it has the other one.
 struct Needed {
@@ -63,24 +52,19 @@ OutputKind kind_by_name(const Job& job, const std::string& name) {
     }
     return {"triangulate", {}};
   }
-  const std::string_view first = std::string_view(name).substr(0, dot);
-  const auto* const product = std::find_if(kProducts.begin(), kProducts.end(),
-                                           [&](const Product& p) { return p.name == first; });
-  if (product == kProducts.end()) {
-    std::vector<std::string_view> names;
-    for (const Product& known : kProducts) names.push_back(known.name);
+  const std::string first = name.substr(0, dot);
+  const std::vector<std::string>& products = dem_product_names();
+  const bool is_subcommand = std::ranges::find(kSubcommands, first) != kSubcommands.end();
+  if (!is_subcommand && std::ranges::find(products, first) == products.end()) {
     throw UsageError(
         fmt::format("{}: no output can be made as \"{}\"; before the dot stands one "
-                    "of {}",
-                    job.name, name, fmt::join(names, ", ")));
+                    "of {}, {}",
+                    job.name, name, fmt::join(kSubcommands, ", "), fmt::join(products, ", ")));
   }
-  OutputKind kind{std::string(product->subcommand), {}};
   const VectorFormat* const format = vector_format_of_path("x." + name);
-  kind.is_lonlat = format != nullptr && format->is_lonlat;
-  if (!product->option.empty()) {
-    kind.arguments = {std::string(product->option), std::string(product->value)};
-  }
-  return kind;
+  const bool is_lonlat = format != nullptr && format->is_lonlat;
+  if (is_subcommand) return {first, {}, is_lonlat};
+  return {"dem", {"--product", first}, is_lonlat};
 }
 
 bool makes_any(const Job& job, std::string_view subcommand) {
@@ -117,6 +101,36 @@ std::string products_of(const OutputKind& kind, const Job& job) {
   if (!kind.arguments.empty()) return kind.arguments.back();
   const auto given = job.options.find("product");
   return given == job.options.end() ? "height" : fmt::format("{}", fmt::join(given->second, ","));
+}
+
+/// Options of a raster that only such products use.
+constexpr std::array<std::pair<std::string_view, bool DemProductTraits::*>, 5> kTraitOfOption = {
+    {{"azimuth", &DemProductTraits::by_azimuth},
+     {"altitude", &DemProductTraits::by_altitude},
+     {"z-factor", &DemProductTraits::by_ground},
+     {"gradient", &DemProductTraits::by_gradient},
+     {"compute-edges", &DemProductTraits::of_neighbours}}};
+
+/// Of products with commas between them; unknown ones are left to the subcommand.
+std::vector<DemProductTraits> traits_of_list(const std::string& products) {
+  const std::vector<std::string>& names = dem_product_names();
+  std::vector<DemProductTraits> traits;
+  std::istringstream words(products);
+  for (std::string name; std::getline(words, name, ',');) {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) continue;
+    traits.push_back(traits_of(static_cast<DemProduct>(found - names.begin())));
+  }
+  return traits;
+}
+
+bool has_any(const std::vector<DemProductTraits>& traits, bool DemProductTraits::*trait) {
+  return std::ranges::any_of(traits, trait);
+}
+
+bool has_value(const Job& job, const std::string& option, const std::string& value) {
+  const auto given = job.options.find(option);
+  return given != job.options.end() && std::ranges::count(given->second, value) > 0;
 }
 
 /// A path as the parser takes it for one: not for an option or a list, whatever it begins with.
@@ -239,14 +253,13 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
   if (subcommand == "dem") {
     const std::string products = products_of(kind, job);
     if (name == "product") return kind.arguments.empty();
-    if (name == "azimuth" || name == "altitude") {
-      return products.find("hillshade") != std::string::npos;
+    const std::vector<DemProductTraits> traits = traits_of_list(products);
+    for (const auto& [option, trait] : kTraitOfOption) {
+      if (name == option) return has_any(traits, trait);
     }
-    if (name == "z-factor") {
-      return std::ranges::any_of(std::array{"slope", "aspect", "hillshade"}, [&](const char* one) {
-        return products.find(one) != std::string::npos;
-      });
-    }
+    const bool all_shades = std::ranges::all_of(traits, &DemProductTraits::by_altitude);
+    if (name == "type") return all_shades;
+    if (name == "nodata" && all_shades && has_value(job, "type", "byte")) return false;
     if (name == "force-crs" && job.options.contains("like")) return true;
     if (products == "density" && (name == "max-edge" || name == "heights")) return false;
   }

@@ -27,8 +27,21 @@ constexpr const char* kExamples =
     "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
     "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
 
+bool needs_neighbours(const std::string& product) {
+  const std::vector<std::string>& names = dem_product_names();
+  const auto number = std::ranges::find(names, product) - names.begin();
+  return traits_of(static_cast<DemProduct>(number)).of_neighbours;
+}
+
 /// Why no pixel has a value, and what helps.
 std::string why_empty(const DemCommandOptions& options, const DemReport& raster) {
+  if (!options.compute_edges && needs_neighbours(raster.bands.front()) &&
+      (raster.columns < 3 || raster.rows < 3)) {
+    return fmt::format(
+        "none of the {} x {} has the eight neighbours that {} needs; give a smaller --resolution, "
+        "or --compute-edges",
+        raster.columns, raster.rows, raster.bands.front());
+  }
   if (options.bounds.empty() && options.like.empty()) {
     return fmt::format(
         "pixels of {} are so large that none has its centre in a triangle of the points; give a "

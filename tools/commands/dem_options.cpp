@@ -58,18 +58,38 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   return products;
 }
 
-void check_products(const CommandLine& app, const std::vector<DemProduct>& products) {
-  const auto has = [&](DemProduct product) {
-    return std::find(products.begin(), products.end(), product) != products.end();
+/// Refuses options that make no difference to the products.
+void check_products(const DemCommandOptions& options, const std::vector<DemProduct>& products) {
+  const auto any = [&](bool DemProductTraits::*trait) {
+    return std::ranges::any_of(products, [trait](DemProduct one) { return traits_of(one).*trait; });
   };
-  if (!has(DemProduct::kHillshade)) {
-    refuse_given(app, {"--azimuth", "--altitude"}, "without hillshade among the products");
+  const CommandLine& app = *options.app;
+  if (!any(&DemProductTraits::by_azimuth)) {
+    refuse_given(app, {"--azimuth"}, "without hillshade among the products");
   }
-  if (!has(DemProduct::kSlope) && !has(DemProduct::kAspect) && !has(DemProduct::kHillshade)) {
-    refuse_given(app, {"--z-factor"}, "without slope, aspect or hillshade among the products");
+  if (!any(&DemProductTraits::by_altitude)) {
+    refuse_given(app, {"--altitude"}, "without hillshade among the products");
+  }
+  if (!any(&DemProductTraits::by_ground)) {
+    refuse_given(app, {"--z-factor"},
+                 "without slope, aspect, hillshade or curvature among the products");
+  }
+  if (!any(&DemProductTraits::by_gradient)) {
+    refuse_given(app, {"--gradient"}, "without slope, aspect or hillshade among the products");
+  }
+  if (!any(&DemProductTraits::of_neighbours)) {
+    refuse_given(app, {"--compute-edges"}, "without a product of a pixel's neighbours, like slope");
   }
   if (products == std::vector{DemProduct::kDensity}) {
     refuse_given(app, {"--heights", "--max-edge"}, "on density, which counts vertices");
+  }
+  if (options.type != "byte") return;
+  refuse_given(app, {"--nodata"}, "on bytes, in which 0 is no data");
+  for (const DemProduct product : products) {
+    if (traits_of(product).by_altitude) continue;
+    throw UsageError(fmt::format(
+        "--type byte is for shades, from 1 to 255: {} does not fit; leave it out, or --type",
+        dem_product_names()[static_cast<std::size_t>(product)]));
   }
 }
 
@@ -115,9 +135,9 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .group(group)
       // Its coordinate system is compared with that of a mesh, too.
       .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
-  take_parsed(app.add_option(
-                  "--product", options.products,
-                  "height, slope, aspect, hillshade, density; several, with commas, become bands"),
+  take_parsed(app.add_option("--product", options.products,
+                             fmt::format("{}; several, with commas, become bands",
+                                         fmt::join(dem_product_names(), ", "))),
               parse_products)
       .value_name("LIST")
       .show_default()
@@ -133,14 +153,23 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .show_default()
       .group(group);
   take_parsed(app.add_option("--z-factor", options.z_factor,
-                             "Multiply heights by this for slope, aspect and hillshade [by units]"),
+                             "Multiply heights by this for slopes, shades, curvatures [by units]"),
               parse_factor)
       .value_name("F")
+      .group(group);
+  add_choice(app, "--gradient", options.gradient, {"horn", "zevenbergen-thorne"},
+             "Of slope, aspect and hillshade")
+      .group(group);
+  app.add_flag("--compute-edges", options.compute_edges,
+               "Make slopes and the like also where neighbours have no data")
       .group(group);
   take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
               parse_nodata)
       .value_name("V")
       .show_default()
+      .group(group);
+  add_choice(app, "--type", options.type, {"float32", "byte"},
+             "Of pixels; bytes are for hillshades")
       .group(group);
   add_choice(app, "--compress", options.compression, {"deflate", "zstd", "none"},
              "Compression of the file")
@@ -170,7 +199,11 @@ DemOptions dem_options(const DemCommandOptions& options) {
     dem.foreign_crs = options.input.force_crs;
   }
   dem.products = parse_products(options.products);
-  check_products(*options.app, dem.products);
+  check_products(options, dem.products);
+  dem.gradient =
+      options.gradient == "horn" ? GradientMethod::kHorn : GradientMethod::kZevenbergenThorne;
+  dem.compute_edges = options.compute_edges;
+  dem.type = options.type == "byte" ? PixelType::kByte : PixelType::kFloat32;
   dem.azimuth = options.azimuth;
   dem.altitude = options.altitude;
   if (!options.z_factor.empty()) dem.z_factor = parse_factor(options.z_factor);

@@ -17,7 +17,10 @@ struct DemCommandOptions : TerrainOptions {
   bool force_size = false;
   std::string like;
   std::string products = "height";
+  std::string gradient = "horn";
+  bool compute_edges = false;
   std::string nodata = "-9999";
+  std::string type = "float32";
   std::string compression = "deflate";
   bool cloud_optimized = false;
   double azimuth = 315;

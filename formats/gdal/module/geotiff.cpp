@@ -38,6 +38,11 @@ std::string upper(std::string text) {
   throw SystemRefusal(fmt::format("cannot write {}: {}", options.name, what), options.name, 0);
 }
 
+/// A value from 1 to 255, rounded; no data is 0.
+std::uint8_t byte_of(float value) {
+  return value == 0 ? 0 : static_cast<std::uint8_t>(std::clamp(value + 0.5F, 1.0F, 255.0F));
+}
+
 /// The driver of that name, which must have the compression that is wished.
 GDALDriver& driver_for(const RasterOptions& options, const char* name) {
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
@@ -82,7 +87,7 @@ class GeoTiff : public Raster {
     const CPLStringList creation = plain_options();
     file_.reset(driver.Create(plain_path_.c_str(), static_cast<int>(grid.columns),
                               static_cast<int>(grid.rows), static_cast<int>(options_.bands.size()),
-                              GDT_Float32, creation.List()));
+                              of_bytes() ? GDT_Byte : GDT_Float32, creation.List()));
     if (!file_) fail(gdal_reason());
     std::array<double, 6> transform = {grid.west, grid.resolution, 0, grid.north,
                                        0,         -grid.resolution};
@@ -100,10 +105,14 @@ class GeoTiff : public Raster {
   void write_tile(std::size_t number, std::uint32_t tile_column, std::uint32_t tile_row,
                   std::span<const float> pixels) override {
     forget_gdal_errors();
+    if (of_bytes()) {
+      bytes_.resize(pixels.size());
+      std::ranges::transform(pixels, bytes_.begin(), byte_of);
+    }
+    const void* const block = of_bytes() ? static_cast<const void*>(bytes_.data()) : pixels.data();
     // Straight to the file: nothing is left to a cache that writes in an order of its own.
-    const CPLErr error =
-        band(number).WriteBlock(static_cast<int>(tile_column), static_cast<int>(tile_row),
-                                const_cast<float*>(pixels.data()));
+    const CPLErr error = band(number).WriteBlock(
+        static_cast<int>(tile_column), static_cast<int>(tile_row), const_cast<void*>(block));
     if (error != CE_None || gdal_failed()) fail(gdal_reason());
   }
 
@@ -115,6 +124,8 @@ class GeoTiff : public Raster {
   }
 
  private:
+  [[nodiscard]] bool of_bytes() const { return options_.type == PixelType::kByte; }
+
   [[nodiscard]] GDALRasterBand& band(std::size_t number) {
     return *file_->GetRasterBand(static_cast<int>(number) + 1);
   }
@@ -129,7 +140,7 @@ class GeoTiff : public Raster {
     creation.SetNameValue("NUM_THREADS", fmt::format("{}", threads_).c_str());
     if (options_.compression == "none") return creation;
     creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
-    creation.SetNameValue("PREDICTOR", "3");
+    creation.SetNameValue("PREDICTOR", of_bytes() ? "2" : "3");
     creation.SetNameValue("ZLEVEL", kDeflateLevel);
     creation.SetNameValue("ZSTD_LEVEL", kZstdLevel);
     return creation;
@@ -143,7 +154,7 @@ class GeoTiff : public Raster {
     CPLStringList creation;
     creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
     if (options_.compression != "none") {
-      creation.SetNameValue("PREDICTOR", "FLOATING_POINT");
+      creation.SetNameValue("PREDICTOR", of_bytes() ? "STANDARD" : "FLOATING_POINT");
       creation.SetNameValue("LEVEL", options_.compression == "zstd" ? kZstdLevel : kDeflateLevel);
     }
     creation.SetNameValue("BIGTIFF", "IF_SAFER");
@@ -165,6 +176,7 @@ class GeoTiff : public Raster {
   const RasterOptions options_;
   const std::string plain_path_;
   const unsigned threads_;
+  std::vector<std::uint8_t> bytes_;  ///< of a tile that is written
   GDALDatasetUniquePtr file_;
 };
 

@@ -63,10 +63,19 @@ void check_products(const std::vector<DemProduct>& products) {
   }
 }
 
-/// Whether a product tells how the surface leans.
-bool is_of_gradient(DemProduct product) {
-  return product == DemProduct::kSlope || product == DemProduct::kAspect ||
-         product == DemProduct::kHillshade;
+/// Whether a product compares heights with distances.
+bool is_by_ground(DemProduct product) { return traits_of(product).by_ground; }
+
+/// Bytes hold shades.
+void check_type(const DemOptions& options) {
+  check_choice(options.type, PixelType::kByte, "pixel type");
+  if (options.type != PixelType::kByte) return;
+  for (const DemProduct product : options.products) {
+    if (traits_of(product).by_altitude) continue;
+    throw InvalidArgument(
+        fmt::format("bytes hold shades, from 1 to 255, and not {}: choose float32",
+                    dem_product_names()[static_cast<std::size_t>(product)]));
+  }
 }
 
 void check_z_factor(const std::optional<double>& factor) {
@@ -109,6 +118,7 @@ GridRequest grid_request(const DemOptions& options) {
 RasterOptions file_options(const std::string& path, const DemOptions& options,
                            RasterOptions raster) {
   raster.name = raster.path = path;
+  raster.type = options.type;
   raster.compression = options.compression;
   raster.cloud_optimized = options.cloud_optimized;
   return raster;
@@ -119,6 +129,7 @@ RasterOptions file_options(const std::string& path, const DemOptions& options,
 DemFile::DemFile(const DemOptions& options, const Context& context)
     : OwnSink(context), options_(options), scratch_(context.state().scratch(context)) {
   check_products(options_.products);
+  check_choice(options_.gradient, GradientMethod::kZevenbergenThorne, "gradient method");
   check_light_and_file(options_);
   check_z_factor(options_.z_factor);
   check_max_edge(options_.max_edge);
@@ -129,6 +140,8 @@ DemFile::DemFile(const DemOptions& options, const Context& context)
   if (options_.like.empty()) dem_options_.grid = grid_request(options_);
   dem_options_.products = options_.products;
   dem_options_.light = {options_.azimuth, options_.altitude};
+  dem_options_.gradient = options_.gradient;
+  dem_options_.compute_edges = options_.compute_edges;
   dem_options_.nodata = options_.nodata;
   dem_options_.memory = own_memory(context.memory());
   dem_options_.threads = feeding_threads(context.threads());
@@ -138,6 +151,8 @@ DemFile::DemFile(const std::string& path, const DemOptions& options, const Conte
     : DemFile(options, context) {
   path_ = path;
   check_path(path_);
+  check_type(options_);
+  if (options_.type == PixelType::kByte) dem_options_.nodata = 0;
   if (is_first_process(context)) check_can_create(disk(), path_);
 }
 
@@ -181,7 +196,10 @@ BlockSink& DemFile::open(const MeshStart& start) {
   dem_.emplace(dem_options_, start.header.lattice,
                start.scratch != nullptr ? *start.scratch : *scratch_);
   // What is too large is told before the points are read.
-  if (!wants_extent()) dem_->begin(Box<2>{});
+  if (!wants_extent()) {
+    dem_->begin(Box<2>{});
+    tell_of_degrees();
+  }
   return writer_.emplace(*dem_);
 }
 
@@ -208,6 +226,8 @@ void DemFile::identify(RunIdentity& identity) const {
   }
   add("azimuth", options_.azimuth);
   add("altitude", options_.altitude);
+  add("gradient", options_.gradient == GradientMethod::kHorn ? "Horn" : "Zevenbergen-Thorne");
+  add("values at edges", options_.compute_edges);
   add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
 }
 
@@ -216,6 +236,7 @@ void DemFile::extent_known(const Box<2>& extent, std::uint64_t vertices) {
   check_latitudes(dem_->in_output(extent));
   check_size(extent, vertices);
   dem_->begin(extent);
+  tell_of_degrees();
 }
 
 /// A raster that is refused, or that a warning tells of, is so when the extent is certain.
@@ -227,6 +248,7 @@ bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
   } catch (const Failure&) {
     return false;
   }
+  tell_of_degrees();
   return true;
 }
 
@@ -239,14 +261,14 @@ BlockSink* DemFile::begin_again() {
 
 /// Heights without a unit are in that of x and y, and in metres above degrees.
 GroundScale DemFile::ground() const {
-  if (!std::ranges::any_of(options_.products, is_of_gradient)) return {};
+  if (!std::ranges::any_of(options_.products, is_by_ground)) return {};
   if (options_.z_factor) return {.height = *options_.z_factor};
   if (crs_.empty()) return {};
   const CrsUnits units = gdal().crs_units(crs_);
   if (units.is_geographic) {
     if (context().options().detail) {
       context().options().detail(fmt::format(
-          "{}: slope, aspect and hillshade take x and y for degrees, and heights for {}",
+          "{}: slopes, shades and curvatures take x and y for degrees, and heights for {}",
           gdal().crs_name(crs_),
           units.vertical > 0 ? fmt::format("{:.12g} metres", units.vertical) : "metres"));
     }
@@ -260,7 +282,7 @@ GroundScale DemFile::ground() const {
   if (!(factor > 0) || !std::isfinite(factor) || std::abs(factor - 1) <= kRounding) return {};
   if (context().options().detail) {
     context().options().detail(
-        fmt::format("{}: slope, aspect and hillshade multiply heights by {:.12g}",
+        fmt::format("{}: slopes, shades and curvatures multiply heights by {:.12g}",
                     gdal().crs_name(crs_), factor));
   }
   return {.height = factor};
@@ -274,9 +296,29 @@ void DemFile::check_latitudes(const Box<2>& extent) const {
   if (extent.empty() || farthest * degrees <= 90 + kRounding) return;
   throw Failure(
       fmt::format("y reaches from {:.15g} to {:.15g}, which are no latitudes of {}: how x and "
-                  "y relate to heights is not known, as slope, aspect and hillshade need it",
+                  "y relate to heights is not known, as slopes, shades and curvatures need it",
                   extent.lo[1], extent.hi[1], gdal().crs_name(crs_)),
       ErrorCode::kBadInput, {.remedy = Remedy::kGroundScale});
+}
+
+/// Warns, once, where what is compared with heights may be degrees.
+void DemFile::tell_of_degrees() {
+  if (told_of_degrees_ || !crs_.empty() || options_.z_factor || !context().options().warning ||
+      std::ranges::none_of(options_.products, is_by_ground)) {
+    return;
+  }
+  const PixelGrid& grid = dem_->grid();
+  const double east = grid.west + grid.columns * grid.resolution;
+  const double south = grid.north - grid.rows * grid.resolution;
+  const double off = grid.resolution;  // the last pixels may reach beyond
+  if (grid.west < -180 - off || east > 180 + off || south < -90 - off || grid.north > 90 + off) {
+    return;
+  }
+  told_of_degrees_ = true;
+  context().options().warning(
+      "warning: x and y may be degrees, as they lie within -180 to 180 and -90 to 90, and the "
+      "coordinate system is not known: slopes, shades and curvatures take them for lengths in the "
+      "unit of the heights; name the coordinate system, or give a factor of z, such as 1");
 }
 
 PixelGrid DemFile::grid_of(const Box<2>& extent) const {
@@ -365,9 +407,44 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
 namespace spillway {
 
 const std::vector<std::string>& dem_product_names() {
-  static const std::vector<std::string> names = {"height", "slope", "aspect", "hillshade",
-                                                 "density"};
+  static const std::vector<std::string> names = {
+      "height",         "slope",       "aspect",       "hillshade",       "multi-hillshade",
+      "roughness",      "tri",         "tpi",          "curvature",       "profile-curvature",
+      "plan-curvature", "facet-slope", "facet-aspect", "facet-hillshade", "density"};
   return names;
+}
+
+DemProductTraits traits_of(DemProduct product) {
+  switch (product) {
+    case DemProduct::kSlope:
+    case DemProduct::kAspect:
+      return {.of_neighbours = true, .by_gradient = true, .by_ground = true};
+    case DemProduct::kHillshade:
+      return {.of_neighbours = true,
+              .by_gradient = true,
+              .by_ground = true,
+              .by_azimuth = true,
+              .by_altitude = true};
+    case DemProduct::kMultiHillshade:
+      return {.of_neighbours = true, .by_gradient = true, .by_ground = true, .by_altitude = true};
+    case DemProduct::kRoughness:
+    case DemProduct::kTri:
+    case DemProduct::kTpi:
+      return {.of_neighbours = true};
+    case DemProduct::kCurvature:
+    case DemProduct::kProfileCurvature:
+    case DemProduct::kPlanCurvature:
+      return {.of_neighbours = true, .by_ground = true};
+    case DemProduct::kFacetSlope:
+    case DemProduct::kFacetAspect:
+      return {.by_ground = true};
+    case DemProduct::kFacetHillshade:
+      return {.by_ground = true, .by_azimuth = true, .by_altitude = true};
+    case DemProduct::kHeight:
+    case DemProduct::kDensity:
+      break;
+  }
+  return {};
 }
 
 std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,

@@ -52,6 +52,7 @@ class DemFile final : public OwnSink<DemSink> {
   void check_latitudes(const Box<2>& extent) const;
   [[nodiscard]] PixelGrid grid_of(const Box<2>& extent) const;
   void check_size(const Box<2>& extent, std::uint64_t vertices) const;
+  void tell_of_degrees();
 
   std::string path_;             ///< empty: pixels_ takes them
   DemPixels* pixels_ = nullptr;  ///< or none
@@ -60,6 +61,7 @@ class DemFile final : public OwnSink<DemSink> {
   DemSinkOptions dem_options_;
   std::shared_ptr<ScratchFolder> scratch_;
   std::string crs_;
+  bool told_of_degrees_ = false;
   std::optional<Dem> dem_;
   std::optional<DemWriter> writer_;
   DemReport report_;

@@ -298,7 +298,7 @@ TEST(DemOracle, ATriangleThatFallsDueNorthWinsOverItsNeighbours) {
   const Point<3> shared{4, 8, 2};
   std::vector<Triangle> triangles = {{top, shared, {-6, 8, 2}}, {top, {9, 1, 0}, shared}};
   const PixelGrid grid{-6.5, 8.5, 1, 16, 9};
-  DemSinkOptions options{.products = {DemProduct::kAspect}};
+  DemSinkOptions options{.products = {DemProduct::kFacetAspect}};
   for (int turn = 0; turn < 2; ++turn) {
     const Rastered dem = raster_of(triangles, grid, options);
     EXPECT_NEAR(dem.bands[0][6 * 16 + 7], 66.0375137, 1e-5);  // at (1, 2)

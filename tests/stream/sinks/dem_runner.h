@@ -115,8 +115,8 @@ inline std::vector<Point<3>> with_heights(const std::vector<Point<2>>& points,
   return result;
 }
 
-inline const DemSinkOptions kAllProducts{.products = {DemProduct::kHeight, DemProduct::kSlope,
-                                                      DemProduct::kAspect, DemProduct::kHillshade,
-                                                      DemProduct::kDensity}};
+inline const DemSinkOptions kAllProducts{
+    .products = {DemProduct::kHeight, DemProduct::kFacetSlope, DemProduct::kFacetAspect,
+                 DemProduct::kFacetHillshade, DemProduct::kDensity}};
 
 }  // namespace spillway::test

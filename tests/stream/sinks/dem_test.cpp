@@ -85,8 +85,8 @@ TEST(Dem, TilesThatAreClosedDoNotMatter) {
   for (const bool whole : {false, true}) {
     const auto points = with_heights(square_points(20'000, 700, whole, 5),
                                      [](double x, double y) { return x < 300 ? 1 : rough(x, y); });
-    DemSinkOptions options{.products = {DemProduct::kHeight, DemProduct::kSlope,
-                                        DemProduct::kAspect, DemProduct::kHillshade}};
+    DemSinkOptions options{.products = {DemProduct::kHeight, DemProduct::kFacetSlope,
+                                        DemProduct::kFacetAspect, DemProduct::kFacetHillshade}};
     options.grid = {.resolution = 0.5, .bounds = Box<2>{{20, -50}, {700, 650}}};
     for (const double max_edge : {1000.0, 22.0}) {
       EngineOptions stream{.asked = {.max_edge = max_edge}};
@@ -264,7 +264,7 @@ TEST(Dem, PixelsAreCountedOnceAndNoneBesideTheRaster) {
 TEST(Dem, PixelsThatDoNotFitIntoMemoryGoToTheDiskAndComeBack) {
   const auto points = with_heights(square_points(3000, 1500, false, 5), rough);
   DemSinkOptions options{
-      .products = {DemProduct::kHeight, DemProduct::kSlope, DemProduct::kDensity}};
+      .products = {DemProduct::kHeight, DemProduct::kFacetSlope, DemProduct::kDensity}};
   options.grid = {.resolution = 1};
   const Rastered one = raster_of(points, options);
   EXPECT_EQ(one.spilled, 0U);

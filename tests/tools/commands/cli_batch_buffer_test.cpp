@@ -73,11 +73,12 @@ class Neighbours : public ::testing::Test {
 
   /// That the rasters of these jobs are those of the whole, overlap by a row of pixels at most,
   /// and leave out none.
-  void expect_the_whole(const std::vector<std::string>& jobs) const {
+  void expect_the_whole(const std::vector<std::string>& jobs,
+                        const std::string& product = "dem") const {
     const Pixels whole = pixels_of(space, "whole.tif");
     std::map<std::pair<int, int>, int> times;
     for (const std::string& name : jobs) {
-      for (const auto& [place, value] : pixels_of(space, "out/" + name + ".dem.tif")) {
+      for (const auto& [place, value] : pixels_of(space, "out/" + name + "." + product + ".tif")) {
         ++times[place];
         const auto found = whole.find(place);
         ASSERT_TRUE(found != whole.end()) << name;
@@ -101,6 +102,14 @@ class Neighbours : public ::testing::Test {
 TEST_F(Neighbours, WithABufferMakeTheRasterOfTheWhole) {
   make_rasters("in", 15);
   expect_the_whole({"a", "b", "c", "d"});
+}
+
+/// Those of a pixel's neighbours, which lie in the raster of another job, too.
+TEST_F(Neighbours, HaveSlopesWithoutSeams) {
+  space.succeed(
+      "spillway dem -q in -o whole.tif --resolution 0.5 --align --product slope\n"
+      "spillway batch in --output-dir out --buffer 15 --to slope.tif --resolution 0.5 -q");
+  expect_the_whole({"a", "b", "c", "d"}, "slope");
 }
 
 TEST_F(Neighbours, BehindOthersDoNotWidenTheRaster) {

@@ -55,8 +55,8 @@ constexpr std::size_t kLeastY = 203;
 
 TEST_F(DemOfASurvey, IsPaintedEarlyAndEqualsThatOfOneFile) {
   for (const std::string options :
-       {"--cog", "--product slope,aspect,height,hillshade", "--product height,density", "--align",
-        "--max-edge 5", "--bounds 500000,4100000,500250,4100300"}) {
+       {"--cog", "--product slope,facet-aspect,height,hillshade", "--product height,density",
+        "--align", "--max-edge 5", "--bounds 500000,4100000,500250,4100300"}) {
     // Which of several points with equal x and y comes first is up to the files.
     const std::string all = " --heights lowest " + options;
     EXPECT_FALSE(is_early(make("one.tif", "all.las" + all)));

@@ -103,7 +103,8 @@ TEST(Dem, EqualsWhatGdalGridInterpolates) {
 
 TEST(Dem, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
   const Workspace work;
-  const std::string products = "--resolution 0.7 --product height,slope,aspect,hillshade,density";
+  const std::string products =
+      "--resolution 0.7 --product height,slope,facet-slope,facet-aspect,facet-hillshade,density";
   work.succeed(
       "spillway generate -q terrain -n 50000 -o in.las\n"
       "spillway triangulate -q in.las -o tin.spm\n"
@@ -155,7 +156,7 @@ TEST(Dem, TiesAndZerosGiveTheSameBytesInEveryOrderAndWay) {
   const Workspace work;
   const std::string dem =
       "spillway dem -q --resolution 0.5 --bounds=-1.25,-1.25,41.25,41.25 "
-      "--product height,slope,aspect,hillshade,density --compress none ";
+      "--product height,facet-slope,facet-aspect,facet-hillshade,slope,density --compress none ";
   work.write("in.txt", ties(40, 0));
   work.succeed(
       "spillway triangulate -q in.txt -o tin.spm && spillway triangulate -q in.txt -o tin.obj");
@@ -193,7 +194,7 @@ TEST(Dem, AFacetThatFallsDueNorthHasNoSayBesideTheOneThatOwnsTheCentre) {
   work.write("other.obj", vertices + "f 1 4 2\nf 1 2 3\n");
   for (const std::string name : {"one", "other"}) {
     work.succeed("spillway dem -q " + name + ".obj -o " + name +
-                 ".tif --resolution 1 --bounds=-6.5,-0.5,9.5,8.5 --product aspect");
+                 ".tif --resolution 1 --bounds=-6.5,-0.5,9.5,8.5 --product facet-aspect");
   }
   EXPECT_TRUE(work.read("one.tif") == work.read("other.tif"));
   const OpenedRaster dem(work, "one.tif");
@@ -228,12 +229,12 @@ TEST(Dem, ProductsBecomeBandsWithTheirNames) {
   const Workspace work;
   work.write("points.txt", "0 0 0\n10 0 10\n0 10 0\n10 10 10\n");
   work.succeed(
-      "spillway dem -q points.txt -o dem.tif --resolution 1 --product slope,aspect,hillshade "
-      "--azimuth 270 --altitude 45 --nodata -1");
+      "spillway dem -q points.txt -o dem.tif --resolution 1 --product "
+      "facet-slope,facet-aspect,facet-hillshade --azimuth 270 --altitude 45 --nodata -1");
   const OpenedRaster dem(work, "dem.tif");
   ASSERT_EQ(dem.file().GetRasterCount(), 3);
-  EXPECT_STREQ(dem.band(1).GetDescription(), "slope");
-  EXPECT_STREQ(dem.band(3).GetDescription(), "hillshade");
+  EXPECT_STREQ(dem.band(1).GetDescription(), "facet-slope");
+  EXPECT_STREQ(dem.band(3).GetDescription(), "facet-hillshade");
   EXPECT_EQ(dem.band(2).GetNoDataValue(), -1);
   EXPECT_THAT(dem.pixels(1), ::testing::Each(45));
   EXPECT_THAT(dem.pixels(2), ::testing::Each(270));
@@ -358,7 +359,24 @@ constexpr std::array kRefused = {
     Refused{"UnknownProduct", "points.txt -o dem.tif --resolution 1 --product height,width", 2,
             "width"},
     Refused{"FactorOfNothing", "points.txt -o dem.tif --resolution 1 --z-factor 2", 2,
-            "--z-factor has no effect without slope, aspect or hillshade"},
+            "--z-factor has no effect without slope, aspect, hillshade or curvature"},
+    Refused{"GradientOfNothing",
+            "points.txt -o dem.tif --resolution 1 --product tri --gradient horn", 2,
+            "--gradient has no effect without slope, aspect or hillshade"},
+    Refused{"EdgesOfNothing",
+            "points.txt -o dem.tif --resolution 1 --product facet-slope --compute-edges", 2,
+            "--compute-edges has no effect without a product of a pixel's neighbours"},
+    Refused{"UnknownGradient",
+            "points.txt -o dem.tif --resolution 1 --product slope --gradient sobel", 2,
+            "--gradient"},
+    Refused{"HeightsInBytes", "points.txt -o dem.tif --resolution 1 --type byte", 2,
+            "--type byte is for shades, from 1 to 255: height does not fit"},
+    Refused{"NodataOfBytes",
+            "points.txt -o dem.tif --resolution 1 --type byte --product hillshade --nodata 9", 2,
+            "--nodata has no effect on bytes, in which 0 is no data"},
+    Refused{"AzimuthOfFourLights",
+            "points.txt -o dem.tif --resolution 1 --product multi-hillshade --azimuth 9", 2,
+            "--azimuth has no effect without hillshade"},
     Refused{"NoFactor", "points.txt -o dem.tif --resolution 1 --product slope --z-factor 0", 2,
             "\"0\" is not a factor"},
     Refused{"ProductTwice", "points.txt -o dem.tif --resolution 1 --product slope,slope", 2,

@@ -37,11 +37,15 @@ TEST(DemUnits, DegreesHaveTheirLengthForSlopes) {
   work.write("points.txt", plane_in_degrees(1));
   const std::string dem =
       "spillway dem -q points.txt -o dem.tif --resolution 0.0001 "
-      "--product height,slope,aspect,hillshade --azimuth 270 ";
+      "--product height,slope,aspect,hillshade,facet-slope,facet-aspect,facet-hillshade "
+      "--azimuth 270 ";
   work.succeed(dem + "--crs EPSG:4326");
   EXPECT_NEAR(middle_of(work, "dem.tif", 2), 45, 0.01);
   EXPECT_NEAR(middle_of(work, "dem.tif", 3), 270, 0.01);
   EXPECT_NEAR(middle_of(work, "dem.tif", 4), 255, 0.01);
+  EXPECT_NEAR(middle_of(work, "dem.tif", 5), 45, 0.01);
+  EXPECT_NEAR(middle_of(work, "dem.tif", 6), 270, 0.01);
+  EXPECT_NEAR(middle_of(work, "dem.tif", 7), 255, 0.01);
   const float height = middle_of(work, "dem.tif", 1);
   // No guess, and what is said by hand.
   work.succeed(dem);
@@ -73,7 +77,8 @@ TEST(DemUnits, HeightsInFeetAboveMetresAreScaledForSlopes) {
 TEST(DemUnits, DegreesGiveTheSameBytesHoweverTheyCome) {
   const Workspace work;
   work.write("points.txt", plane_in_degrees(0.3));
-  const std::string dem = " -o {} --resolution 0.00003 --product slope,aspect,hillshade -q ";
+  const std::string dem =
+      " -o {} --resolution 0.00003 --product slope,aspect,facet-hillshade,curvature -q ";
   const auto run = [&](const std::string& input, const std::string& output) {
     work.succeed("spillway dem " + input + fmt::format(fmt::runtime(dem), output));
     return work.read(output);

@@ -209,6 +209,9 @@ INSTANTIATE_TEST_SUITE_P(
         Unused{"AzimuthWithoutHillshade",
                "batch in.las --output-dir out --to dem.tif,slope.tif --resolution 9 --azimuth 9",
                "none of its outputs uses the option --azimuth"},
+        Unused{"OfABatchWithoutShades",
+               "batch in.las --output-dir out --to dem.tif,tpi.tif --resolution 9 --type byte",
+               "none of its outputs uses the option --type"},
         Unused{"ProductOfANamedProduct",
                "batch in.las --output-dir out --to slope.tif --resolution 9 --product height",
                "none of its outputs uses the option --product"},
@@ -255,6 +258,11 @@ TEST(UnusedOptions, OfABatchGoToTheStepsThatUseThem) {
       "spillway dem -q in.las --resolution 9 --product hillshade --azimuth 90 --max-edge 99 "
       "--heights lowest -o light.tif\n"
       "cmp light.tif out/in.hillshade.tif\n"
+      "spillway batch in.las --output-dir bytes --to dem.tif,tri.tif,multi-hillshade.tif "
+      "--resolution 9 --type byte --nodata 7 --compute-edges --gradient horn --altitude 30\n"
+      "spillway dem -q in.las -o four.tif --resolution 9 --product multi-hillshade --type byte "
+      "--compute-edges --gradient horn --altitude 30\n"
+      "cmp four.tif bytes/in.multi-hillshade.tif\n"
       "spillway batch in.las --output-dir like --to spm,dem.tif --like like.tif --force-crs");
 }
 

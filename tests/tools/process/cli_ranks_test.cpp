@@ -239,7 +239,7 @@ TEST_F(RanksOfTheCommand, WriteOneFileInAnyFormatOrToAPipe) {
 TEST_F(RanksOfTheCommand, MakeTheSameRasterToTheByte) {
   work_.succeed("spillway generate -q terrain -n 200000 -o in.las");
   const std::string options =
-      "-q in.las --resolution 0.4 --product height,slope,aspect,hillshade,density";
+      "-q in.las --resolution 0.4 --product height,slope,curvature,facet-hillshade,density";
   work_.succeed(fmt::format("spillway dem {} -o a.tif", options));
   for (const int count : {1, 2, 5}) {
     work_.succeed(ranks(count, fmt::format("dem {} -o b.tif", options)));

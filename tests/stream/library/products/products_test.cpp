@@ -138,7 +138,8 @@ TEST_F(Products, PixelsInMemoryComeBandByBand) {
   const auto source = points_in_memory(points);
   DemPixels pixels;
   const auto dem = create_dem(
-      pixels, {.products = {DemProduct::kAspect, DemProduct::kHeight}, .resolution = 1}, context_);
+      pixels, {.products = {DemProduct::kFacetAspect, DemProduct::kHeight}, .resolution = 1},
+      context_);
   triangulate(*source, *dem, {}, context_);
   ASSERT_EQ(pixels.values.size(), 2U * 20 * 10);
   EXPECT_EQ(pixels.values.front(), 270);

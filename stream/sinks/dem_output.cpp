@@ -1,0 +1,306 @@
+#include "stream/sinks/dem_output.h"
+
+#include <spillway/dem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "src/parallel/parallel.h"
+#include "stream/sinks/tile_edges.h"
+
+namespace spillway::stream {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+
+std::span<float> band_of(std::vector<float>& pixels, std::size_t band) {
+  return std::span(pixels).subspan(band * RasterStore::kTilePixels, RasterStore::kTilePixels);
+}
+
+/// The values that readers take for nodata, and what is written in their place. GDAL compares
+/// floats but for some roundings (its ARE_REAL_EQUAL()).
+struct NodataNeighbourhood {
+  explicit NodataNeighbourhood(float nodata) : lowest(nodata), highest(nodata) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const auto is_taken = [nodata](float value) {
+      constexpr double kShare = 2.0 * std::numeric_limits<float>::epsilon();
+      return std::abs(double{value} - nodata) < kShare * std::abs(double{value} + nodata);
+    };
+    while (is_taken(std::nextafter(lowest, -kInfinity))) {
+      lowest = std::nextafter(lowest, -kInfinity);
+    }
+    while (is_taken(std::nextafter(highest, kInfinity))) {
+      highest = std::nextafter(highest, kInfinity);
+    }
+    replacement = std::nextafter(highest, kInfinity);
+    if (std::isinf(replacement)) replacement = std::nextafter(lowest, -kInfinity);
+  }
+
+  float lowest;
+  float highest;
+  float replacement;  ///< the next value that is told from nodata
+};
+
+/// Puts a tile into its frame.
+void fill(std::span<const float> pixels, std::span<float> framed) {
+  for (std::size_t row = 0; row < kRasterTile; ++row) {
+    std::ranges::copy(pixels.subspan(row * kRasterTile, kRasterTile),
+                      framed.begin() + static_cast<std::ptrdiff_t>((row + 1) * kFramedSide + 1));
+  }
+}
+
+}  // namespace
+
+bool has_neighbours(const std::vector<DemProduct>& products) {
+  return std::ranges::any_of(products, [](DemProduct one) { return traits_of(one).of_neighbours; });
+}
+
+std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products) {
+  std::vector<DemProduct> layers;
+  std::ranges::copy_if(products, std::back_inserter(layers),
+                       [](DemProduct one) { return !traits_of(one).of_neighbours; });
+  if (has_neighbours(products) && std::ranges::find(layers, DemProduct::kHeight) == layers.end()) {
+    layers.push_back(DemProduct::kHeight);
+  }
+  return layers;
+}
+
+/// A tile on its way.
+struct DemOutput::Slot {
+  std::uint64_t position = 0;  ///< of the tile that is taken in order
+  std::vector<std::vector<std::byte>> others;
+  std::vector<float> layers;
+  std::vector<float> framed;  ///< heights
+  std::vector<float> bands;
+  std::uint64_t with_data = 0;
+};
+
+DemOutput::DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
+                     const TileLayout& tiles, RasterStore& store)
+    : options_(options),
+      layers_(layers),
+      tiles_(tiles),
+      store_(store),
+      light_direction_(direction_of(options.light)),
+      multi_shade_(options.light.altitude) {
+  for (std::size_t b = 0; b < options_.products.size(); ++b) {
+    const DemProduct product = options_.products[b];
+    if (traits_of(product).of_neighbours) derived_.push_back({product, b});
+  }
+  const auto heights = std::ranges::find(layers_, DemProduct::kHeight);
+  heights_ = static_cast<std::size_t>(heights - layers_.begin());
+}
+
+std::uint64_t DemOutput::bytes(const TileLayout& tiles) {
+  if (tiles.margin == 0) return 0;
+  return TileEdges::bytes(tiles) + tiles.ring_pixels() * sizeof(float);
+}
+
+/// Takes the heights beyond the raster's edges from the store.
+void DemOutput::take_ring(const OtherTiles& others) {
+  std::vector<float> layers;
+  for (std::uint64_t tile = 0; tile < tiles_.ring_tiles(); ++tile) {
+    store_.take(tile, layers, others ? others(tile) : std::vector<std::vector<std::byte>>{});
+    std::ranges::copy(band_of(layers, heights_), std::back_inserter(ring_));
+  }
+}
+
+/// Puts those that are next to a tile into its frame, or into the tile where the raster ends in it.
+void DemOutput::add_ring(std::uint64_t tile, std::span<float> framed) const {
+  const std::uint32_t top = tiles_.row(tile) * kRasterTile;
+  const std::uint32_t left = tiles_.column(tile) * kRasterTile;
+  const auto [rows, columns] = tiles_.size(tile);
+  const auto put = [&](std::uint32_t row, std::uint32_t column) {
+    if (!tiles_.is_in_ring(top + row, left + column)) return;
+    framed[row * kFramedSide + column] = ring_[tiles_.ring_pixel(top + row, left + column)];
+  };
+  for (std::uint32_t column = 0; column < columns + 2; ++column) {
+    put(0, column);
+    put(rows + 1, column);
+  }
+  for (std::uint32_t row = 0; row < rows + 2; ++row) {
+    put(row, 0);
+    put(row, columns + 1);
+  }
+}
+
+/// As many as twice the memory of pixels holds: the triangulation, which had more, is done. Two of
+/// them in any case, so that one is made while another is written.
+std::size_t DemOutput::slots() const {
+  const std::size_t bands = layers_.size() + (derived_.empty() ? 0 : options_.products.size() + 1);
+  const std::uint64_t bytes = bands * RasterStore::kTilePixels * sizeof(float);
+  return std::clamp<std::size_t>(2 * options_.memory / bytes, 2, options_.threads + 2);
+}
+
+std::uint64_t DemOutput::write(Raster& raster,
+                               const std::function<void(std::uint64_t pixels)>& progress,
+                               const OtherTiles& others) {
+  const std::uint64_t tiles = tiles_.count();
+  const std::uint64_t delay = derived_.empty() ? 0 : TileEdges::delay(tiles_);
+  std::vector<Slot> in_work(slots());
+  TileEdges edges(tiles_);
+  take_ring(others);
+  std::uint64_t next = 0;
+  std::uint64_t done = 0;
+  std::uint64_t with_data = 0;
+  const auto source = [&](std::size_t s) {
+    if (next == tiles + delay) return false;
+    Slot& slot = in_work[s];
+    if (others && next < tiles) slot.others = others(tiles_.stored(next));
+    slot.position = next++;
+    return true;
+  };
+  const auto take = [&](std::size_t s) {
+    Slot& slot = in_work[s];
+    if (slot.position >= tiles) return;
+    store_.take(tiles_.stored(slot.position), slot.layers, slot.others);
+  };
+  const auto look_around = [&](std::size_t s) {
+    Slot& slot = in_work[s];
+    slot.framed.resize(kFramedSide * kFramedSide);
+    if (slot.position < tiles) {
+      edges.add(band_of(slot.layers, heights_));
+      store_.put_back(tiles_.stored(slot.position), slot.layers);
+    }
+    if (slot.position >= delay) edges.frame(slot.position - delay, slot.framed);
+  };
+  const auto make = [&](std::size_t s) {
+    Slot& slot = in_work[s];
+    if (slot.position < delay) return;
+    const std::uint64_t tile = slot.position - delay;
+    if (delay > 0) store_.take(tiles_.stored(tile), slot.layers);
+    make_bands(tile, slot);
+  };
+  const auto write_tile = [&](std::size_t s) {
+    Slot& slot = in_work[s];
+    if (slot.position < delay) return;
+    const std::uint64_t tile = slot.position - delay;
+    for (std::size_t b = 0; b < options_.products.size(); ++b) {
+      raster.write_tile(b, tiles_.column(tile), tiles_.row(tile), band_of(slot.bands, b));
+    }
+    const auto [rows, columns] = tiles_.size(tile);
+    done += std::uint64_t{rows} * columns;
+    with_data += slot.with_data;
+    progress(done);
+  };
+  std::vector<PipelineStep> steps = {{.in_order = false, .work = take}};
+  if (delay > 0) steps.push_back({.in_order = true, .work = look_around});
+  steps.push_back({.in_order = false, .work = make});
+  steps.push_back({.in_order = true, .work = write_tile});
+  run_pipeline(in_work.size(), source, steps);
+  return with_data;
+}
+
+void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
+  const auto size = tiles_.size(tile);
+  if (derived_.empty()) {
+    slot.bands.swap(slot.layers);
+  } else {
+    slot.bands.resize(options_.products.size() * RasterStore::kTilePixels);
+    std::size_t layer = 0;
+    for (std::size_t b = 0; b < options_.products.size(); ++b) {
+      if (traits_of(options_.products[b]).of_neighbours) continue;
+      std::ranges::copy(band_of(slot.layers, layer++), band_of(slot.bands, b).begin());
+    }
+    fill(band_of(slot.layers, heights_), slot.framed);
+    add_ring(tile, slot.framed);
+    derive(tile, slot);
+  }
+  for (std::size_t b = 0; b < options_.products.size(); ++b) {
+    finish_band(options_.products[b], size, band_of(slot.bands, b));
+  }
+  slot.with_data = 0;
+  const auto first = band_of(slot.bands, 0);
+  for (std::uint32_t row = 0; row < size.rows; ++row) {
+    const auto pixels = first.subspan(std::size_t{row} * kRasterTile, size.columns);
+    slot.with_data += static_cast<std::uint64_t>(std::ranges::count_if(pixels, [&](float pixel) {
+      return std::isnan(options_.nodata) ? !std::isnan(pixel) : pixel != options_.nodata;
+    }));
+  }
+}
+
+/// Products of neighbours.
+void DemOutput::derive(std::uint64_t tile, Slot& slot) const {
+  const auto [rows, columns] = tiles_.size(tile);
+  const PixelGrid& grid = tiles_.grid;
+  const std::uint32_t first_row = tiles_.row(tile) * kRasterTile;
+  const std::uint32_t first_column = tiles_.column(tile) * kRasterTile;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    const Point<2> lengths = lengths_at(options_.ground, grid.centre_y(first_row + row));
+    const Point<2> sides = {lengths[0] * grid.resolution, lengths[1] * grid.resolution};
+    const float* north = &slot.framed[row * kFramedSide];
+    RasterEnd end{.north = first_row + row == 0, .south = first_row + row + 1 == grid.rows};
+    for (std::uint32_t column = 0; column < columns; ++column, ++north) {
+      const float* const middle = north + kFramedSide;
+      const float* const south = middle + kFramedSide;
+      Neighbourhood z = {north[0],  north[1], north[2], middle[0], middle[1],
+                         middle[2], south[0], south[1], south[2]};
+      bool whole = is_complete(z);
+      if (!whole && options_.compute_edges && std::isfinite(z[4])) {
+        end.west = first_column + column == 0;
+        end.east = first_column + column + 1 == grid.columns;
+        complete(z, end);
+        whole = is_complete(z);
+      }
+      Gradient gradient{};
+      if (whole) {
+        gradient = gradient_of(z, options_.gradient, sides);
+        for (double& part : gradient) part *= options_.ground.height;
+      }
+      for (const auto& [product, band] : derived_) {
+        slot.bands[band * RasterStore::kTilePixels + std::size_t{row} * kRasterTile + column] =
+            whole ? static_cast<float>(value_of(product, z, sides, gradient)) : kNothing;
+      }
+    }
+  }
+}
+
+double DemOutput::value_of(DemProduct product, const Neighbourhood& z, const Point<2>& sides,
+                           const Gradient& gradient) const {
+  switch (product) {
+    case DemProduct::kSlope:
+      return slope_of(gradient);
+    case DemProduct::kAspect:
+      return aspect_of(gradient);
+    case DemProduct::kHillshade:
+      return shade_of(gradient, light_direction_);
+    case DemProduct::kMultiHillshade:
+      return multi_shade_.of(gradient);
+    case DemProduct::kRoughness:
+      return roughness_of(z);
+    case DemProduct::kTri:
+      return ruggedness_of(z);
+    case DemProduct::kTpi:
+      return position_of(z);
+    case DemProduct::kCurvature:
+      return CurvedSurface(z, sides, options_.ground.height).curvature();
+    case DemProduct::kProfileCurvature:
+      return CurvedSurface(z, sides, options_.ground.height).profile();
+    case DemProduct::kPlanCurvature:
+      return CurvedSurface(z, sides, options_.ground.height).plan();
+    default:
+      return kNothing;  // painted
+  }
+}
+
+/// Makes of values what is written.
+void DemOutput::finish_band(DemProduct product, TileLayout::Size size,
+                            std::span<float> band) const {
+  const NodataNeighbourhood nodata(options_.nodata);
+  const bool density = product == DemProduct::kDensity;
+  for (std::size_t i = 0; i < band.size(); ++i) {
+    float& pixel = band[i];
+    if (density && std::isnan(pixel)) pixel = 0;
+    const bool is_in = i / kRasterTile < size.rows && i % kRasterTile < size.columns;
+    if (!is_in || !std::isfinite(pixel)) {
+      pixel = options_.nodata;
+      continue;
+    }
+    if (pixel >= nodata.lowest && pixel <= nodata.highest) pixel = nodata.replacement;
+    pixel += 0.0F;  // -0 becomes 0
+  }
+}
+
+}  // namespace spillway::stream

@@ -1,0 +1,71 @@
+#pragma once
+// What is painted of a terrain becomes the bands of a raster.
+
+#include <spillway/choices.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "formats/gdal/raster.h"
+#include "src/terrain/neighbourhood.h"
+#include "stream/sinks/dem_sink_options.h"
+#include "stream/sinks/raster_store.h"
+#include "stream/sinks/tile_layout.h"
+
+namespace spillway::stream {
+
+/// What has to be painted for products, layer by layer: those of neighbours need heights.
+std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products);
+
+/// Whether a product depends on neighbours.
+bool has_neighbours(const std::vector<DemProduct>& products);
+
+/// What another raster of the same grid has of a tile; called tile by tile, in order.
+using OtherTiles = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
+
+/// Makes bands of layers, tile by tile. Where products depend on neighbours, tiles are taken from
+/// the store a row ahead for the heights at their edges, and put back.
+class DemOutput {
+ public:
+  /// All of them must outlive it.
+  DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
+            const TileLayout& tiles, RasterStore& store);
+
+  /// What it needs besides tiles of pixels, in bytes.
+  static std::uint64_t bytes(const TileLayout& tiles);
+
+  /// As Dem::write(). Returns the pixels of the first band that have a value.
+  std::uint64_t write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                      const OtherTiles& others);
+
+ private:
+  struct Slot;
+  struct Derived {
+    DemProduct product;
+    std::size_t band;
+  };
+
+  [[nodiscard]] std::size_t slots() const;
+  void take_ring(const OtherTiles& others);
+  void make_bands(std::uint64_t tile, Slot& slot) const;
+  void add_ring(std::uint64_t tile, std::span<float> framed) const;
+  void derive(std::uint64_t tile, Slot& slot) const;
+  [[nodiscard]] double value_of(DemProduct product, const Neighbourhood& z, const Point<2>& sides,
+                                const Gradient& gradient) const;
+  void finish_band(DemProduct product, TileLayout::Size size, std::span<float> band) const;
+
+  const DemSinkOptions& options_;
+  const std::vector<DemProduct>& layers_;
+  const TileLayout& tiles_;
+  RasterStore& store_;
+  std::vector<Derived> derived_;
+  std::size_t heights_ = 0;  ///< their layer, if anything is derived
+  std::vector<float> ring_;  ///< heights
+  const Point<3> light_direction_;
+  const MultiShade multi_shade_;
+};
+
+}  // namespace spillway::stream

@@ -1,0 +1,37 @@
+#pragma once
+// What a raster of a terrain is to be like.
+
+#include <spillway/dem.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "src/terrain/grid_choice.h"
+#include "src/terrain/ground_scale.h"
+#include "src/terrain/pixel_values.h"
+#include "src/terrain/triangle_pixels.h"
+
+namespace spillway::stream {
+
+struct DemSinkOptions {
+  std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
+  GridRequest grid{};
+  Light light{};
+  GroundScale ground{};  ///< of products that compare heights with distances
+  GradientMethod gradient = GradientMethod::kHorn;
+  bool compute_edges = false;        ///< also where neighbours of a pixel have no data
+  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
+  float nodata = -9999;
+  std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
+  unsigned threads = 1;      ///< of which each may have a hand on the pixels
+  /// A tile of pixels is closed as soon as each has been painted by the triangle that owns it. For
+  /// triangles that do not overlap, all of which are painted here.
+  bool closes_tiles = false;
+  /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
+  /// order; by many threads. Those in whose box no pixel has its centre are passed over.
+  std::function<void(const Triangle&)> outline{};
+};
+
+}  // namespace spillway::stream
