@@ -1,6 +1,7 @@
 #include "src/terrain/neighbourhood.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace spillway::terrain {
@@ -43,6 +44,14 @@ void complete(Neighbourhood& z, const RasterEnd& end) {
   for (float& height : z) {
     if (!std::isfinite(height)) height = z[4];
   }
+}
+
+float rounded_aspect_of(const Gradient& gradient) {
+  if (gradient[0] == 0 && gradient[1] == 0) return std::numeric_limits<float>::quiet_NaN();
+  const auto from_east =
+      static_cast<float>(std::atan2(-gradient[1], -gradient[0]) * 180 / std::numbers::pi);
+  const float from_north = (from_east > 90 ? 450 : 90) - from_east;
+  return from_north < 360 ? from_north : 0;
 }
 
 double shade_of(const Gradient& gradient, const Point<3>& light_direction) {

@@ -50,6 +50,10 @@ inline Gradient gradient_of(const Neighbourhood& z, GradientMethod method, const
   return {east / (8 * sides[0]), north / (8 * sides[1])};
 }
 
+/// The direction that the surface falls to, as aspect_of(), but rounded to float in the steps of
+/// gdaldem, counter-clockwise from east and then clockwise from north.
+float rounded_aspect_of(const Gradient& gradient);
+
 /// Brightness from 1 (no light) to 255 (facing the light): 1 and 254 times the cosine of the angle
 /// between the light and the surface's normal.
 double shade_of(const Gradient& gradient, const Point<3>& light_direction);

@@ -263,7 +263,7 @@ double DemOutput::value_of(DemProduct product, const Neighbourhood& z, const Poi
     case DemProduct::kSlope:
       return slope_of(gradient);
     case DemProduct::kAspect:
-      return aspect_of(gradient);
+      return rounded_aspect_of(gradient);
     case DemProduct::kHillshade:
       return shade_of(gradient, light_direction_);
     case DemProduct::kMultiHillshade:

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace spillway::test {
 namespace {
@@ -46,6 +48,21 @@ TEST(Neighbourhood, HornCountsTheNeighboursBesideTwice) {
   EXPECT_EQ(gradient_of(z, GradientMethod::kHorn, {1, 1})[0], 1);
   EXPECT_EQ(gradient_of(z, GradientMethod::kHorn, {1, 1})[1], 1);
   EXPECT_EQ(gradient_of(z, GradientMethod::kZevenbergenThorne, {1, 1})[0], 0);
+}
+
+TEST(Neighbourhood, AspectsAreThoseOfAGradientRounded) {
+  EXPECT_TRUE(std::isnan(rounded_aspect_of({0, 0})));
+  for (const auto& [gradient, aspect] : std::vector<std::pair<Gradient, float>>{
+           {{0, -1}, 0.0F}, {{-1, 0}, 90.0F}, {{0, 1}, 180.0F}, {{1, 0}, 270.0F}}) {
+    EXPECT_EQ(rounded_aspect_of(gradient), aspect);
+    EXPECT_FALSE(std::signbit(rounded_aspect_of(gradient)));
+  }
+  EXPECT_EQ(rounded_aspect_of({1e-9, -1}), 0);  // not 360
+  for (int degrees = 1; degrees < 360; ++degrees) {
+    const double radians = degrees * M_PI / 180;
+    const Gradient gradient = {-std::sin(radians), -std::cos(radians)};
+    EXPECT_NEAR(rounded_aspect_of(gradient), aspect_of(gradient), 4e-5);
+  }
 }
 
 TEST(Neighbourhood, ShadesReachFromOneTo255) {

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "tools/options/suggestion.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::command {
@@ -47,8 +48,10 @@ std::vector<DemProduct> parse_products(const std::string& text) {
   for (std::string name; std::getline(words, name, ',');) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      throw UsageError(fmt::format("\"{}\" is not a product; give {}, several separated by commas",
-                                   name, fmt::join(names, ", ")));
+      throw UsageError(fmt::format(
+          "\"{}\" is not a product{}; give height, slope, hillshade or another one, several "
+          "separated by commas",
+          name, suggestion(name, names)));
     }
     products.push_back(static_cast<DemProduct>(found - names.begin()));
     if (std::count(products.begin(), products.end(), products.back()) > 1) {

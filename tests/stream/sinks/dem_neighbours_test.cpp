@@ -88,7 +88,7 @@ TEST(DemNeighbours, EveryPixelIsWhatItsNineHeightsTell) {
           for (double& part : gradient) part *= 1.5;
           const CurvedSurface curved(z, {1, 1}, 1.5);
           ASSERT_FLOAT_EQ(dem.bands[0][i], static_cast<float>(slope_of(gradient)));
-          const auto aspect = static_cast<float>(aspect_of(gradient));
+          const float aspect = rounded_aspect_of(gradient);
           ASSERT_TRUE(dem.bands[2][i] == aspect || std::isnan(aspect));
           ASSERT_FLOAT_EQ(dem.bands[3][i],
                           static_cast<float>(shade_of(gradient, direction_of(options.light))));

@@ -75,10 +75,8 @@ TEST_F(DemBesideGdaldem, SlopeIsTheSame) {
 }
 
 TEST_F(DemBesideGdaldem, AspectIsTheSame) {
-  constexpr float kOneUlpOf360 = 3.0518e-5F;
-  expect_equal("aspect", "", "aspect", kOneUlpOf360);
-  expect_equal("aspect", "--gradient zevenbergen-thorne", "aspect -alg ZevenbergenThorne",
-               kOneUlpOf360);
+  expect_equal("aspect", "", "aspect", kOneUlp);
+  expect_equal("aspect", "--gradient zevenbergen-thorne", "aspect -alg ZevenbergenThorne", kOneUlp);
 }
 
 TEST_F(DemBesideGdaldem, HillshadeIsTheSame) {

@@ -358,6 +358,8 @@ constexpr std::array kRefused = {
     Refused{"MissingFolder", "points.txt -o no/dem.tif --resolution 1", 1, "create the folder"},
     Refused{"UnknownProduct", "points.txt -o dem.tif --resolution 1 --product height,width", 2,
             "width"},
+    Refused{"MisspelledProduct", "points.txt -o dem.tif --resolution 1 --product plan-curvatur", 2,
+            "is not a product (did you mean plan-curvature?)"},
     Refused{"FactorOfNothing", "points.txt -o dem.tif --resolution 1 --z-factor 2", 2,
             "--z-factor has no effect without slope, aspect, hillshade or curvature"},
     Refused{"GradientOfNothing",
