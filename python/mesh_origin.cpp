@@ -1,5 +1,6 @@
 #include "python/mesh_origin.h"
 
+#include <pybind11/stl.h>
 #include <spillway/convert.h>
 #include <spillway/error.h>
 
@@ -21,8 +22,9 @@ void refuse_choice_of_heights(const TriangulateOptions& how, const PointsHeader&
 }  // namespace
 
 MeshOrigin::MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how,
-                       AttributeColumns attributes)
-    : from_(Points{std::move(inputs), std::move(options), std::move(how), std::move(attributes)}) {}
+                       AttributeColumns attributes, std::vector<int> ground_classes)
+    : from_(Points{std::move(inputs), std::move(options), std::move(how), std::move(attributes),
+                   std::move(ground_classes)}) {}
 
 MeshOrigin::MeshOrigin(std::string path, MeshOptions options)
     : from_(File{std::move(path), std::move(options)}) {}
@@ -34,8 +36,16 @@ Report MeshOrigin::send(MeshSink& sink, Run& run) const {
     const auto mesh = open_mesh(file->path, file->options, context);
     return convert(*mesh, sink, context);
   }
-  const auto& [inputs, options, how, attributes] = std::get<Points>(from_);
+  const auto& [inputs, options, how, attributes, ground_classes] = std::get<Points>(from_);
   run.expect(kPhasesOfPoints);
+  if (!ground_classes.empty()) {
+    const PointsAboveGround above =
+        open_above_ground(std::get<std::vector<std::string>>(inputs), options, ground_classes,
+                          {.min_height = 0, .foreign_crs = options.foreign_crs}, how, context);
+    TriangulateOptions of_heights = how;
+    if (how.heights == Heights::kFirst) of_heights.heights = Heights::kHighest;
+    return triangulate(*above.points, sink, of_heights, context);
+  }
   const auto points = open_inputs(inputs, options, context, attributes);
   refuse_choice_of_heights(how, points->header());
   return triangulate(*points, sink, how, context);
@@ -48,7 +58,7 @@ HeightReport MeshOrigin::measure_heights(PointSource& points, PointSink& sink,
     const auto mesh = open_mesh(file->path, file->options, context);
     return spillway::measure_heights(points, *mesh, sink, options, context);
   }
-  const auto& [inputs, of_ground, how, attributes] = std::get<Points>(from_);
+  const auto& [inputs, of_ground, how, attributes, classes] = std::get<Points>(from_);
   const auto ground = open_inputs(inputs, of_ground, context, attributes);
   return spillway::measure_heights(points, *ground, sink, options, how, context);
 }
@@ -56,11 +66,13 @@ HeightReport MeshOrigin::measure_heights(PointSource& points, PointSink& sink,
 void bind_mesh_origin(py::module_& module) {
   py::class_<MeshOrigin, std::shared_ptr<MeshOrigin>>(module, "MeshOrigin")
       .def(py::init([](Inputs inputs, PointOptions options, TriangulateOptions how,
-                       const py::dict& attributes) {
+                       const py::dict& attributes, std::vector<int> ground_classes) {
              return std::make_shared<MeshOrigin>(std::move(inputs), std::move(options),
-                                                 std::move(how), columns_of(attributes));
+                                                 std::move(how), columns_of(attributes),
+                                                 std::move(ground_classes));
            }),
-           py::arg("inputs"), py::arg("options"), py::arg("how"), py::arg("attributes"))
+           py::arg("inputs"), py::arg("options"), py::arg("how"), py::arg("attributes"),
+           py::arg("ground_classes") = std::vector<int>{})
       .def(py::init<std::string, MeshOptions>(), py::arg("path"), py::arg("options"));
   module.def(
       "is_mesh",

@@ -8,6 +8,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "python/inputs.h"
 #include "python/run.h"
@@ -17,9 +18,10 @@ namespace spillway::python {
 /// What a mesh comes from: points, which are triangulated on the way, or a file of a mesh.
 class MeshOrigin {
  public:
-  /// `attributes` is what points of an array carry.
+  /// `attributes` is what points of an array carry. Of files with `ground_classes` z is the height
+  /// above the ground, 0 at least, and the highest counts where none is chosen.
   MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how,
-             AttributeColumns attributes);
+             AttributeColumns attributes, std::vector<int> ground_classes = {});
   MeshOrigin(std::string path, MeshOptions options);
 
   /// Gives the mesh to a sink. To be called without the interpreter's lock.
@@ -35,6 +37,7 @@ class MeshOrigin {
     PointOptions options;
     TriangulateOptions how;
     AttributeColumns attributes;
+    std::vector<int> ground_classes;
   };
   struct File {
     std::string path;

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Sequence, overload
+from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Sequence, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _spillway
-from ._inputs import mesh_origin
+from ._inputs import as_inputs, mesh_origin
 from ._messages import tell
 from ._options import (
     DemOptions,
@@ -16,10 +16,13 @@ from ._options import (
     TriangulateOptions,
     as_path,
     make_run,
+    point_options,
     put,
     put_all,
+    put_classes,
     refuse,
     takes,
+    triangulate_options,
 )
 from ._reports import ContourReport, PictureReport, RasterReport
 from .errors import InvalidArgumentError
@@ -56,6 +59,7 @@ def dem(
     align: bool = False,
     like: PathLike | None = None,
     product: str | Sequence[str] = "height",
+    ground_class: int | Iterable[int] | None = None,
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
@@ -78,6 +82,7 @@ def dem(
     align: bool = False,
     like: PathLike | None = None,
     product: str | Sequence[str] = "height",
+    ground_class: int | Iterable[int] | None = None,
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
@@ -104,6 +109,7 @@ def dem(
     align: bool = False,
     like: PathLike | None = None,
     product: str | Sequence[str] = "height",
+    ground_class: int | Iterable[int] | None = None,
     azimuth: float | None = None,
     altitude: float | None = None,
     z_factor: float | None = None,
@@ -141,6 +147,9 @@ def dem(
         ``"roughness"``, ``"tri"``, ``"tpi"``, ``"curvature"``, ``"profile-curvature"``,
         ``"plan-curvature"``, ``"facet-slope"``, ``"facet-aspect"``, ``"facet-hillshade"`` or
         ``"density"``; several are bands.
+    ground_class : int or sequence of int, optional
+        Of ``product="chm"``, heights above the ground: points of these classes are the ground; 2 by
+        default.
     azimuth, altitude : float, optional
         Where a hillshade's light comes from, and its height above the horizon, in degrees; 315 and
         45 by default.
@@ -175,7 +184,10 @@ def dem(
         As `triangulate`; ``"too large"`` for a raster that is large because of points far away.
     """
     how = _spillway.DemOptions()
-    put(how, "product", product, _put_products)
+    is_canopy = isinstance(product, str) and product == _CANOPY
+    put(how, "product", "height" if is_canopy else product, _put_products)
+    if not is_canopy:
+        refuse({"ground_class": ground_class}, ["ground_class"], 'without product="chm"')
     products = how.products
     surface = {
         "azimuth": azimuth,
@@ -205,7 +217,10 @@ def dem(
     put_all(how, {"max_edge": options.get("max_edge")})
     of_files = {"nodata": nodata, "type": type, "compress": compress, "cog": cog}
     run = make_run(options)
-    origin = mesh_origin(run, inputs, 2, mesh_format, options)
+    if is_canopy:
+        origin = _canopy_origin(run, inputs, ground_class, mesh_format, options)
+    else:
+        origin = mesh_origin(run, inputs, 2, mesh_format, options)
     if output is not None:
         if type == "byte":
             refuse(of_files, ["nodata"], "on bytes, in which 0 is no data")
@@ -362,6 +377,28 @@ def render(
 def _put_slice(target: _spillway.PictureOptions, value: tuple[str, float]) -> None:
     axis, place = value
     target.set_slice(axis, place)
+
+
+_CANOPY = "chm"
+
+
+def _canopy_origin(
+    run: _spillway.Run,
+    inputs: Any,
+    ground_class: int | Iterable[int] | None,
+    mesh_format: str | None,
+    options: Any,
+) -> _spillway.MeshOrigin:
+    """Triangles of points of files whose z is their height above the ground."""
+    source = as_inputs(inputs)
+    if not isinstance(source, list):
+        raise InvalidArgumentError("chm is made of files of points, which have classes")
+    refuse({"mesh_format": mesh_format}, ["mesh_format"], "with chm, which is made of points")
+    refuse(options, ["resume", "checkpoint_every"], "with chm, which takes two runs")
+    ground = _spillway.PointOptions()
+    put(ground, "ground_class", 2 if ground_class is None else ground_class, put_classes)
+    how = triangulate_options(options, 2)
+    return _spillway.MeshOrigin(source, point_options(options, 0), how, {}, ground.classes)
 
 
 def _put_products(target: _spillway.DemOptions, value: str | Sequence[str]) -> None:

@@ -177,6 +177,7 @@ class MeshOrigin:
         options: PointOptions | MeshOptions,
         how: TriangulateOptions = ...,
         attributes: dict[str, NDArray[Any]] = ...,
+        ground_classes: list[int] = ...,
     ) -> None: ...
 
 def is_mesh(run: Run, inputs: _Inputs, mesh_format: str, point_format: str) -> bool: ...

@@ -69,6 +69,21 @@ class Heights(InFolder):
         heights = spillway.height("all.spp", ground_class=2, keep_class=5)
         np.testing.assert_allclose(heights, self.above, atol=1e-12)
 
+    def test_canopies_are_those_of_the_command(self):
+        command("convert", self.write_forest(), "-o", "forest.las", "--scale", 0.001)
+        raster = ["--resolution", 0.1, "--product", "chm"]
+        command("dem", "forest.las", "-o", "a.tif", *raster)
+        spillway.dem("forest.las", "b.tif", resolution=0.1, product="chm", ground_class=2)
+        self.assertEqual(bytes_of("b.tif"), bytes_of("a.tif"))
+        values = spillway.dem("forest.las", resolution=0.1, product="chm").values
+        self.assertGreater(np.nanmax(values), 5)
+        self.assertGreaterEqual(np.nanmin(values), 0)
+
+    def write_forest(self):
+        rows = [(*p, 2) for p in self.ground] + [(*p, 5) for p in self.points]
+        np.savetxt("forest.csv", rows, delimiter=",", header="x,y,z,classification", comments="")
+        return "forest.csv"
+
     def test_options_that_have_no_effect_are_refused(self):
         spillway.triangulate(self.ground, "ground.spm")
         with self.assertRaisesRegex(ValueError, "what is the ground"):

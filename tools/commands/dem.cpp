@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 #include <spillway/dem.h>
+#include <spillway/height.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "src/runtime/memory_budget.h"
 #include "tools/commands/command.h"
@@ -23,6 +27,7 @@ constexpr const char* kExamples =
     "  spillway dem survey.laz -o dem.tif --resolution 0.5\n"
     "  spillway dem 'tiles/*.laz' -o dtm.tif --resolution 0.5 --keep-class 2 --align --cog\n"
     "  spillway dem survey.las -o relief.tif --resolution 1 --product height,slope,hillshade\n"
+    "  spillway dem survey.las -o canopy.tif --resolution 1 --product chm --ground-class 2\n"
     "  spillway dem after.las -o after.tif --like before.tif\n"
     "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
     "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
@@ -86,6 +91,29 @@ Json raster_json(const DemReport& raster) {
           {"spilled_bytes", raster.spilled_bytes}};
 }
 
+/// Sends the triangles of points whose z is their height above the ground. Those below it, or beside
+/// it, are left out; of equal x and y the highest counts, unless --heights says otherwise.
+TracedReport send_canopy(const DemCommandOptions& options, MeshSink& sink, const Context& context,
+                         ProgressLine& progress) {
+  const std::vector<int> classes =
+      options.ground_class.empty() ? std::vector<int>{2} : parse_classes(options.ground_class);
+  TriangulateOptions how = triangulate_options(options, 2);
+  const PointsAboveGround above =
+      open_above_ground(options.inputs, point_options(options.input, 0), classes,
+                        {.min_height = 0, .foreign_crs = options.input.force_crs}, how, context);
+  progress.say(fmt::format(
+      "{} points above a ground of {} triangles; {} below it and {} over no triangle left out",
+      above.report.points.written, above.report.ground.mesh.simplices, above.report.below_ground,
+      above.report.without_ground));
+  if (given_options(*options.app, std::array<std::string_view, 1>{"--heights"}).empty()) {
+    how.heights = Heights::kHighest;
+  }
+  TracedReport report = triangulate_and_trace(options, *above.points, sink, how, context);
+  report.points = above.report.points.points;
+  report.skipped_files = above.report.points.skipped_files;
+  return report;
+}
+
 int run(const DemCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const DemOptions how = dem_options(options);
@@ -94,7 +122,9 @@ int run(const DemCommandOptions& options) {
       make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
   const Context context = terrain_context(options, progress);
   const auto dem = create_dem(options.output, how, context);
-  const TracedReport report = send_terrain(options, *dem, context);
+  const TracedReport report = options.products == kCanopy
+                                  ? send_canopy(options, *dem, context, progress)
+                                  : send_terrain(options, *dem, context);
   if (!is_first_rank()) return kExitDone;
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, dem->report(), facts, progress);

@@ -42,10 +42,12 @@ float parse_nodata(const std::string& text) {
 }
 
 std::vector<DemProduct> parse_products(const std::string& text) {
+  if (text == kCanopy) return {DemProduct::kHeight};  // of heights above the ground
   const std::vector<std::string>& names = dem_product_names();
   std::vector<DemProduct> products;
   std::istringstream words(text);
   for (std::string name; std::getline(words, name, ',');) {
+    if (name == kCanopy) throw UsageError("chm is a raster of its own: ask for it alone");
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       throw UsageError(fmt::format(
@@ -139,11 +141,17 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       // Its coordinate system is compared with that of a mesh, too.
       .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
   take_parsed(app.add_option("--product", options.products,
-                             fmt::format("{}; several, with commas, become bands",
-                                         fmt::join(dem_product_names(), ", "))),
+                             fmt::format("{}; several, with commas, become bands; or {}, heights "
+                                         "above the ground",
+                                         fmt::join(dem_product_names(), ", "), kCanopy)),
               parse_products)
       .value_name("LIST")
       .show_default()
+      .group(group);
+  take_parsed(app.add_option("--ground-class", options.ground_class,
+                             "Of chm, points of these classes are the ground [2]")
+                  .value_name("LIST"),
+              [](const std::string& text) { parse_classes(text); })
       .group(group);
   take_number_between(
       app.add_option("--azimuth", options.azimuth, "Where a hillshade's light comes from"), 0, 360)
@@ -202,6 +210,12 @@ DemOptions dem_options(const DemCommandOptions& options) {
     dem.foreign_crs = options.input.force_crs;
   }
   dem.products = parse_products(options.products);
+  if (options.products == kCanopy) {
+    refuse_given(*options.app, {"--tasks", "--resume", "--checkpoint-every"},
+                 "with --product chm, which takes two runs");
+  } else {
+    refuse_given(*options.app, {"--ground-class"}, "without --product chm");
+  }
   check_products(options, dem.products);
   dem.gradient =
       options.gradient == "horn" ? GradientMethod::kHorn : GradientMethod::kZevenbergenThorne;

@@ -8,6 +8,9 @@
 
 namespace spillway::command {
 
+/// The product that is a raster of its own: heights above the ground.
+inline constexpr const char* kCanopy = "chm";
+
 /// The command line of `dem`; an empty text is an option that was not given.
 struct DemCommandOptions : TerrainOptions {
   std::string output;
@@ -17,6 +20,7 @@ struct DemCommandOptions : TerrainOptions {
   bool force_size = false;
   std::string like;
   std::string products = "height";
+  std::string ground_class;
   std::string gradient = "horn";
   bool compute_edges = false;
   std::string nodata = "-9999";

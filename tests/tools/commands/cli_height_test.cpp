@@ -51,6 +51,11 @@ std::vector<std::vector<double>> rows_of(const std::string& text) {
   return rows;
 }
 
+struct Refusal {
+  const char* arguments;
+  const char* message;
+};
+
 class Height : public ::testing::Test {
  protected:
   Height() {
@@ -149,6 +154,30 @@ TEST_F(Height, HasTheSameBytesForAllThreadsAndMemories) {
   }
 }
 
+TEST_F(Height, MakesACanopyInOneCommand) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.succeed("spillway dem forest.laz -o chm.tif --resolution 1 --product chm");
+  // The same in steps.
+  space.succeed(
+      "spillway height forest.laz --ground-class 2 -o heights.spp --replace-z --min-height 0");
+  space.succeed("spillway dem heights.spp -o steps.tif --resolution 1 --heights highest");
+  space.succeed("cmp chm.tif steps.tif");
+  space.succeed("cat forest.laz | spillway dem - -o pipe.tif --resolution 1 --product chm");
+  space.succeed("cmp chm.tif pipe.tif");
+  const Result told = space.run("spillway dem forest.laz -o chm.tif --resolution 1 --product chm");
+  EXPECT_THAT(told.err, HasSubstr("421 points above a ground of 200 triangles; 0 below it and 2 "
+                                  "over no triangle left out"));
+  const Refusal refusals[] = {{"--product chm,height", "chm is a raster of its own"},
+                              {"--product height --ground-class 2", "without --product chm"},
+                              {"--product chm --resume folder", "takes two runs"}};
+  for (const auto& [arguments, message] : refusals) {
+    const Result result =
+        space.run(std::string("spillway dem forest.laz -o a.tif --resolution 1 ") + arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+  }
+}
+
 TEST_F(Height, TellsStatistics) {
   space.succeed("spillway height forest.laz --ground-class 2 -o out.laz --stats stats.json");
   const auto stats = nlohmann::json::parse(space.read("stats.json"));
@@ -165,11 +194,6 @@ TEST_F(Height, OfThinnedPointsIsMeasured) {
   EXPECT_LT(rows.size(), 60U);
   check("all.csv", rows.size());
 }
-
-struct Refusal {
-  const char* arguments;
-  const char* message;
-};
 
 TEST_F(Height, RefusesWhatCannotBe) {
   space.write("flat.csv", "x,y\n1,2\n3,4\n5,1\n");
