@@ -68,6 +68,7 @@ py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,
       send(run, origin, [&] { return create_contours(output, options, run.context()); });
   const ContourReport& lines = sink->report();
   statistics["lines"] = lines.lines;
+  statistics["short_lines"] = lines.short_lines;
   statistics["line_points"] = lines.points;
   statistics["lowest"] = lines.lowest;
   statistics["highest"] = lines.highest;

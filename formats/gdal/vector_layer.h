@@ -14,15 +14,22 @@ namespace spillway::formats {
 struct VectorLayerOptions {
   std::string path;    ///< of the file to create, which is not there yet
   std::string name;    ///< of the file in messages
-  std::string driver;  ///< GDAL's name: "GPKG", "ESRI Shapefile", "GeoJSON"
+  std::string driver;  ///< GDAL's name: "GPKG", "ESRI Shapefile", "GeoJSON", "DXF"
   std::string layer;   ///< the layer's name; a shapefile takes it from its path instead
-  bool lines = false;  ///< lines with an elevation; else triangles
+  bool lines = false;  ///< contours; else triangles
   std::string crs;     ///< as Gdal takes it; empty: unknown
   /// Where the driver brings coordinates to longitude and latitude (GeoJSON), and it is not known
   /// from what: write them as they are, instead of an error.
   bool as_they_are = false;
   /// Said about the layer where the driver can hold it (GeoPackage); dropped elsewhere.
   std::map<std::string, std::string> metadata;
+};
+
+/// A line of equal height.
+struct ContourLine {
+  std::span<const WorldPoint> points;  ///< closed if its ends are equal
+  double elevation = 0;
+  bool is_index = false;
 };
 
 /// A layer being written. The file is not complete before finish(), and is left as it is if the
@@ -36,8 +43,9 @@ class VectorLayer {
 
   /// Adds a triangle as a polygon with z.
   virtual void add_triangle(std::span<const WorldPoint, 3> corners) = 0;
-  /// Adds a line with z and the attribute "elevation"; closed if its ends are equal.
-  virtual void add_line(std::span<const WorldPoint> points, double elevation) = 0;
+  /// Adds a line with z and the attributes "elevation" and "index" (1 or 0). DXF has no
+  /// attributes: it has a layer for index contours, and one for the others.
+  virtual void add_line(const ContourLine& line) = 0;
   /// Completes and closes the file.
   virtual void finish() = 0;
 };

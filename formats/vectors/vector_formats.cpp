@@ -11,7 +11,7 @@
 namespace spillway::formats {
 
 std::span<const VectorFormat* const> vector_formats() {
-  static constexpr const VectorFormat* kFormats[] = {&kGeoPackage, &kShapefile, &kGeoJson};
+  static constexpr const VectorFormat* kFormats[] = {&kGeoPackage, &kShapefile, &kGeoJson, &kDxf};
   return kFormats;
 }
 

@@ -28,6 +28,7 @@ inline constexpr std::string_view kGpkg[] = {"gpkg"};
 inline constexpr std::string_view kShp[] = {"shp"};
 inline constexpr std::string_view kShpParts[] = {".shx", ".dbf", ".prj", ".cpg",
                                                  ".qix", ".sbn", ".sbx", ".qpj"};
+inline constexpr std::string_view kDxf[] = {"dxf"};
 inline constexpr std::string_view kJson[] = {"geojson", "json"};
 }  // namespace vector_names
 
@@ -47,6 +48,9 @@ inline constexpr VectorFormat kGeoJson = {.name = "geojson",
                                           .driver = "GeoJSON",
                                           .extensions = vector_names::kJson,
                                           .is_lonlat = true};
+
+inline constexpr VectorFormat kDxf = {
+    .name = "dxf", .title = "DXF", .driver = "DXF", .extensions = vector_names::kDxf};
 
 /// All of them.
 std::span<const VectorFormat* const> vector_formats();

@@ -22,12 +22,17 @@ struct ContourOptions {
   /// as they are, with a warning, instead of an error.
   bool foreign_crs = false;
   std::optional<double> max_edge{};  ///< of a mesh, leave out triangles with a longer edge
+  /// Of intervals: every so many-th line, counted from the base, is an index contour.
+  std::uint64_t index = 5;
+  /// Leave out lines that are shorter, closed ones too, in units of x and y of the terrain.
+  std::optional<double> min_length{};
 };
 
 /// What became of the lines.
 struct ContourReport {
   std::uint64_t lines = 0;
-  std::uint64_t points = 0;  ///< of lines
+  std::uint64_t short_lines = 0;  ///< left out, being shorter than min_length
+  std::uint64_t points = 0;       ///< of lines
   /// Least and greatest height of the terrain; in reverse order if there is none.
   double lowest = 0;
   double highest = 0;
@@ -41,8 +46,9 @@ class SPILLWAY_API ContourSink : public MeshSink {
   [[nodiscard]] virtual const ContourReport& report() const = 0;
 };
 
-/// Contours as a vector file (gpkg, shp, geojson, ...: by the extension), lines with higher ground
-/// to their left. It gets its name when it is complete. A quarter of the context's memory is for
+/// Contours as a vector file (gpkg, shp, geojson, dxf: by the extension), lines with higher ground
+/// to their left, and attributes: "elevation" and "index", 1 for index contours (in DXF: layers).
+/// It gets its name when it is complete. A quarter of the context's memory is for
 /// lines that are not complete. Throws Error: kInvalidArgument for options that cannot be,
 /// kInputOutput.
 SPILLWAY_API std::unique_ptr<ContourSink> create_contours(const std::string& path,

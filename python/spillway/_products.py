@@ -251,6 +251,8 @@ def contour(
     interval: float | None = None,
     base: float | None = None,
     levels: Sequence[float] | None = None,
+    index: int | None = None,
+    min_length: float | None = None,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> ContourReport:
@@ -263,13 +265,18 @@ def contour(
     inputs : path, sequence of paths, or array_like of shape (n, 3)
         Points, as `triangulate` takes them, or one file of a mesh of triangles.
     output : path
-        A file in the format of its extension: ``.gpkg``, ``.shp``, ``.geojson``, ...
+        A file in the format of its extension: ``.gpkg``, ``.shp``, ``.geojson``, ``.json``
+        or ``.dxf``.
     interval : float
         Height between two lines. Not with `levels`.
     base : float, optional
         A height that intervals are counted from; 0 by default.
     levels : sequence of float, optional
         Heights of lines, instead of an interval.
+    index : int, optional
+        Every so many-th line from the base is an index contour; 5 by default. Not with `levels`.
+    min_length : float, optional
+        Leave out lines that are shorter, in units of x and y.
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -286,19 +293,22 @@ def contour(
     """
     how = _spillway.ContourOptions()
     if levels is not None:
-        spacing = {"interval": interval, "base": base}
+        spacing = {"interval": interval, "base": base, "index": index}
         refuse(spacing, spacing, "with levels, which names all heights")
         if np.size(levels) == 0:
             raise InvalidArgumentError("levels is empty; give heights, or an interval")
     elif interval is None:
         raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
     put_all(how, {"interval": interval, "base": base, "levels": levels})
+    put_all(how, {"index": index, "min_length": min_length})
     put_all(how, {"max_edge": options.get("max_edge")})
     how.foreign_crs = bool(options.get("force_crs"))
     run = make_run(options)
     origin = mesh_origin(run, inputs, 2, mesh_format, options)
     report = ContourReport(**_spillway.contours(run, origin, as_path(output, "output"), how))
-    if report.lines == 0:
+    if report.lines == 0 and report.short_lines > 0:
+        tell(True, f"no lines: {report.short_lines} lines left out: shorter than min_length")
+    elif report.lines == 0:
         tell(
             True,
             f"no lines: no level lies above the lowest height, {report.lowest:g}, and up to the "

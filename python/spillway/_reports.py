@@ -136,10 +136,11 @@ class HeightReport(RunReport):
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
-    """How many lines there are, of how many points, the least and the greatest height of the
-    terrain, and the run that made them."""
+    """How many lines there are, of how many points, how many were left out for their length, the
+    least and the greatest height of the terrain, and the run that made them."""
 
     lines: int
+    short_lines: int
     line_points: int
     lowest: float
     highest: float

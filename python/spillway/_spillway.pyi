@@ -144,6 +144,8 @@ class ContourOptions:
     levels: list[float]
     foreign_crs: bool
     max_edge: float | None
+    index: int
+    min_length: float | None
 
 class PictureOptions:
     size: int

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "src/error.h"
@@ -60,6 +61,13 @@ Levels Levels::of_list(std::vector<double> heights) {
 double Levels::height(std::int64_t number) const {
   return interval_ == 0 ? list_[static_cast<std::size_t>(number)]
                         : base_ + static_cast<double>(number) * interval_;
+}
+
+bool Levels::is_index(std::int64_t number, std::uint64_t every) const {
+  // Numbers are below 2^52 in size, so no other multiple of a larger one is among them.
+  const auto period = static_cast<std::int64_t>(
+      std::min(every, static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())));
+  return interval_ != 0 && number % period == 0;
 }
 
 std::int64_t Levels::first_above(double low) const {

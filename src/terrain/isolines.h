@@ -20,6 +20,8 @@ class Levels {
   static Levels of_list(std::vector<double> heights);
 
   [[nodiscard]] double height(std::int64_t number) const;
+  /// Whether a level is one of every so many, counted from the base; of a list none is.
+  [[nodiscard]] bool is_index(std::int64_t number, std::uint64_t every) const;
 
   /// Numbers of the levels above `low` and up to `high`: from first, before end.
   struct Range {

@@ -49,6 +49,7 @@ void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender)
   statistics.put(ContourStatistics{.lowest = writer.lowest(),
                                    .highest = writer.highest(),
                                    .lines = writer.lines(),
+                                   .short_lines = writer.short_lines(),
                                    .spilled_bytes = writer.spilled_bytes() + lines.stored_bytes()});
   sender.send(statistics.bytes());
   for (auto some = lines.take(); !some.empty(); some = lines.take()) {

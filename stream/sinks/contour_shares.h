@@ -16,7 +16,8 @@ namespace spillway::stream {
 struct ContourStatistics {
   double lowest = 0;
   double highest = 0;
-  std::uint64_t lines = 0;  ///< whole ones
+  std::uint64_t lines = 0;        ///< whole ones
+  std::uint64_t short_lines = 0;  ///< left out
   std::uint64_t spilled_bytes = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "src/geometry/longest_edge.h"
@@ -12,7 +13,11 @@ ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolde
     : options_(std::move(options)),
       joiner_(
           [this, sink = std::move(sink)](std::span<const Point<2>> points, std::int64_t level) {
-            sink(points, options_.levels.height(level));
+            if (too_short(points)) {
+              ++short_lines_;
+            } else {
+              sink(points, level);
+            }
           },
           options_.memory, scratch) {}
 
@@ -21,6 +26,15 @@ std::vector<WorldPoint> ContourWriter::in_output(std::span<const LatticePoint> v
   points.reserve(vertices.size());
   for (const LatticePoint& vertex : vertices) points.push_back(in_world(options_.lattice, vertex));
   return points;
+}
+
+bool ContourWriter::too_short(std::span<const Point<2>> points) const {
+  if (!options_.min_length) return false;
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    length += std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1]);
+  }
+  return length < *options_.min_length;
 }
 
 bool ContourWriter::too_long(const std::array<Corner, 3>& corners) const {

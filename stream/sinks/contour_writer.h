@@ -20,16 +20,17 @@ namespace spillway::stream {
 struct ContourSinkOptions {
   Levels levels = Levels::every(1, 0);
   std::optional<IntegerLattice> lattice;  ///< of the vertices to come
-  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
-  std::uint64_t memory = 0;          ///< bytes for points of lines that are still open
+  std::optional<double> max_edge{};    ///< leave out triangles with a longer edge, in output units
+  std::optional<double> min_length{};  ///< leave out lines that are shorter, in output units
+  std::uint64_t memory = 0;            ///< bytes for points of lines that are still open
 };
 
 /// Draws the isolines of a mesh of triangles as its blocks come. Of the mesh only vertices that are
 /// still to come again stay in memory, of the lines only what may still grow.
 class ContourWriter : public BlockSink {
  public:
-  /// Receives each whole line, in output coordinates.
-  using Sink = std::function<void(std::span<const Point<2>> points, double height)>;
+  /// Receives each whole line, in output coordinates, with its level's number.
+  using Sink = LineJoiner::Sink;
 
   ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch);
 
@@ -43,7 +44,10 @@ class ContourWriter : public BlockSink {
   /// The lines that are open, to be joined elsewhere, and such ones of others.
   [[nodiscard]] LineJoiner& joiner() { return joiner_; }
 
-  [[nodiscard]] std::uint64_t lines() const { return joiner_.lines(); }
+  /// Lines that were given to the sink.
+  [[nodiscard]] std::uint64_t lines() const { return joiner_.lines() - short_lines_; }
+  /// Lines that were left out for their length.
+  [[nodiscard]] std::uint64_t short_lines() const { return short_lines_; }
   /// The least and the greatest height that came; in reverse order if none did.
   [[nodiscard]] double lowest() const { return lowest_; }
   [[nodiscard]] double highest() const { return highest_; }
@@ -53,6 +57,7 @@ class ContourWriter : public BlockSink {
 
  private:
   [[nodiscard]] std::vector<WorldPoint> in_output(std::span<const LatticePoint> vertices) const;
+  [[nodiscard]] bool too_short(std::span<const Point<2>> points) const;
   [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
   void take_heights(std::span<const WorldPoint> vertices);
   void draw(const StreamNumbers& numbers, std::span<const WorldPoint> vertices,
@@ -65,6 +70,7 @@ class ContourWriter : public BlockSink {
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();
   std::uint64_t left_out_ = 0;
+  std::uint64_t short_lines_ = 0;
 };
 
 }  // namespace spillway::stream

@@ -8,8 +8,8 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 
 }  // namespace
 
-void LineStore::add(std::span<const Point<2>> points, double height) {
-  last_.put(height);
+void LineStore::add(std::span<const Point<2>> points, std::int64_t level) {
+  last_.put(level);
   last_.put_list(points);
   if (last_.bytes().size() < kBatch) return;
   if (!file_) file_ = scratch_.create("contours");

@@ -18,19 +18,19 @@ class LineStore {
   /// `scratch` must outlive it.
   explicit LineStore(ScratchFolder& scratch) : scratch_(scratch) {}
 
-  void add(std::span<const Point<2>> points, double height);
+  void add(std::span<const Point<2>> points, std::int64_t level);
 
   /// Some lines as bytes, at least one; nothing when all have been had.
   std::vector<std::byte> take();
 
   [[nodiscard]] std::uint64_t stored_bytes() const { return file_ ? file_->size() : 0; }
 
-  /// Calls take(points, height) with each line of such bytes.
+  /// Calls take(points, level) with each line of such bytes.
   template <typename Take>
   static void for_each(std::span<const std::byte> bytes, const Take& take) {
     for (Unpacker lines(bytes); !lines.empty();) {
-      const auto height = lines.take<double>();
-      take(lines.take_list<std::vector<Point<2>>>(), height);
+      const auto level = lines.take<std::int64_t>();
+      take(lines.take_list<std::vector<Point<2>>>(), level);
     }
   }
 

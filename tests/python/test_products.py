@@ -121,6 +121,8 @@ class Lines(InFolder):
         cases = {
             "--interval 10": {"interval": 10},
             "--interval 10 --base 3": {"interval": 10, "base": 3},
+            "--interval 10 --index 2": {"interval": 10, "index": 2},
+            "--interval 10 --min-length 90.5": {"interval": 10, "min_length": 90.5},
             "--levels 380,390.5": {"levels": [380, 390.5]},
         }
         for words, options in cases.items():
@@ -139,6 +141,12 @@ class Lines(InFolder):
             spillway.contour(points, "a.gpkg")
         with self.assertRaisesRegex(ValueError, "interval has no effect with levels"):
             spillway.contour(points, "a.gpkg", interval=1, levels=[2])
+        with self.assertRaisesRegex(ValueError, "index has no effect with levels"):
+            spillway.contour(points, "a.gpkg", levels=[2], index=5)
+        with self.assertRaisesRegex(ValueError, "index is 0"):
+            spillway.contour(points, "a.gpkg", interval=2, index=0)
+        with self.assertWarnsRegex(spillway.Warning, "lines left out: shorter than min_length"):
+            spillway.contour(points, "a.gpkg", interval=2, min_length=1e6)
         with self.assertWarnsRegex(spillway.Warning, "no lines"):
             self.assertEqual(spillway.contour(points, "a.gpkg", levels=[99]).lines, 0)
 

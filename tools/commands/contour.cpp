@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct ContourCommandOptions : TerrainOptions {
   std::optional<double> interval;
   double base = 0;
   std::vector<double> levels;
+  std::uint64_t index = ContourOptions().index;
+  std::optional<double> min_length;
 };
 
 ContourOptions contour_options(const ContourCommandOptions& options) {
@@ -40,8 +43,10 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   contours.levels = options.levels;
   contours.max_edge = max_edge(options);
   contours.foreign_crs = options.input.force_crs;
+  contours.min_length = options.min_length;
   if (!options.levels.empty()) {
-    refuse_given(*options.app, {"--interval", "--base"}, "with --levels, which names all heights");
+    refuse_given(*options.app, {"--interval", "--base", "--index"},
+                 "with --levels, which names all heights");
     return contours;
   }
   if (!options.interval) {
@@ -49,13 +54,19 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   }
   contours.interval = *options.interval;
   contours.base = options.base;
+  contours.index = options.index;
   return contours;
 }
 
 void say(const ContourCommandOptions& options, const Report& report, const ContourReport& contours,
          const RunFacts& facts, ProgressLine& progress) {
   say_what_is_left_out(options, report, progress);
-  if (contours.lines == 0) {
+  if (contours.short_lines > 0) {
+    const std::string text = fmt::format("{}{} lines left out: shorter than --min-length {}",
+                                         contours.lines == 0 ? "warning: no lines: " : "",
+                                         contours.short_lines, *options.min_length);
+    contours.lines == 0 ? progress.insist(text) : progress.say(text);
+  } else if (contours.lines == 0) {
     progress.insist(
         fmt::format("warning: no lines: no level lies above the lowest height, {}, and up to the "
                     "highest, {}",
@@ -79,6 +90,7 @@ int run(const ContourCommandOptions& options) {
   const RunFacts facts = facts_of_run(options, options.output, context, start);
   say(options, report, contours->report(), facts, progress);
   const Json lines = {{"lines", contours->report().lines},
+                      {"short_lines", contours->report().short_lines},
                       {"points", contours->report().points},
                       {"spilled_bytes", contours->report().spilled_bytes}};
   write_statistics(options, report, facts, {{"contours", lines}});
@@ -107,6 +119,14 @@ Subcommand add_contour(CommandLine& root) {
       .show_default();
   add_number_list(app, "--levels", options->levels, "Heights of lines, instead of an interval")
       .value_name("H,...");
+  take_whole_number(app.add_option("--index", options->index,
+                                   "Every N-th line from the base is an index contour"),
+                    1)
+      .value_name("N")
+      .show_default();
+  take_positive_number(
+      app.add_option("--min-length", options->min_length, "Leave out lines that are shorter"))
+      .value_name("L");
   add_terrain_options(app, *options);
   options->uses_crs = true;
   add_report_options(app, options->report);

@@ -5,16 +5,21 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/gdal/module/crs.h"
+#include "formats/gdal/module/dxf_template.h"
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/vector_drivers.h"
 #include "src/error.h"
@@ -25,6 +30,12 @@ namespace {
 constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
 constexpr std::uint64_t kFeaturesPerLook = 64;  ///< at the disk's free space
 constexpr const char* kElevation = "elevation";
+constexpr const char* kIndex = "index";
+
+// Layers of DXF, by the field in which its driver takes them.
+constexpr const char* kDxfLayer = "Layer";
+constexpr const char* kIndexLayer = "CONTOUR-INDEX";
+constexpr const char* kIntermediateLayer = "CONTOUR-INTERMEDIATE";
 
 // A shapefile's parts may not pass 2 GB, for many programs count their bytes in signed 32 bits. A
 // record of .shp has 8 bytes before it; of a line or polygon with z it has a box, two counts, one
@@ -42,15 +53,28 @@ bool disk_is_full(const std::string& path) {
   return (::geteuid() == 0 ? disk.f_bfree : disk.f_bavail) == 0;
 }
 
-/// Whether a text file ends as JSON does.
-bool ends_as_json(const std::string& path) {
+/// Whether the last word of a text file ends so.
+bool ends_with(const std::string& path, std::string_view end) {
+  constexpr std::streamoff kMost = 64;  // of which a driver's last line has less
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  for (std::streamoff end = file.tellg(); end > 0; --end) {
-    file.seekg(end - 1);
-    const int last = file.get();
-    if (std::isspace(last) == 0) return last == '}';
+  const std::streamoff size = file.tellg();
+  if (size < 0) return false;
+  std::string last(static_cast<std::size_t>(std::min(size, kMost)), ' ');
+  file.seekg(size - static_cast<std::streamoff>(last.size()));
+  file.read(last.data(), static_cast<std::streamsize>(last.size()));
+  while (!last.empty() && std::isspace(static_cast<unsigned char>(last.back())) != 0) {
+    last.pop_back();
   }
-  return false;
+  return std::string_view(last).ends_with(end);
+}
+
+/// A coordinate whose unit is not known. One of 1000 and more is none of degrees: 3 decimals are
+/// enough. The driver writes 7.
+double rounded(double coordinate) {
+  constexpr double kLeast = 1e3;
+  constexpr double kMost = 1e12;  // what has no such digits stays as it is
+  const double size = std::abs(coordinate);
+  return size >= kLeast && size < kMost ? std::round(coordinate * 1000) / 1000 : coordinate;
 }
 
 class OgrLayer : public VectorLayer {
@@ -59,11 +83,20 @@ class OgrLayer : public VectorLayer {
       : name_(options.name),
         path_(options.path),
         is_shapefile_(options.driver == "ESRI Shapefile"),
-        is_json_(options.driver == "GeoJSON") {
+        is_json_(options.driver == "GeoJSON"),
+        is_dxf_(options.driver == "DXF"),
+        is_rounded_(is_json_ && options.as_they_are) {
     forget_gdal_errors();
     GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(options.driver.c_str());
     if (driver == nullptr) fail("GDAL is installed without its driver " + options.driver);
-    file_.reset(driver->Create(options.path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    std::string header;
+    if (is_dxf_) {
+      dxf_template_ = std::make_unique<DxfTemplate>(options.name, options.crs);
+      header = "HEADER=" + dxf_template_->path();
+    }
+    std::array<const char*, 2> how = {is_dxf_ ? header.c_str() : nullptr, nullptr};
+    file_.reset(
+        driver->Create(options.path.c_str(), 0, 0, 0, GDT_Unknown, const_cast<char**>(how.data())));
     if (!file_) fail(gdal_reason());
     create_layer(options);
     forget_gdal_errors();
@@ -81,18 +114,34 @@ class OgrLayer : public VectorLayer {
     }
     OGRPolygon polygon;
     polygon.addRing(&ring);
-    add(polygon, nullptr);
+    OGRFeature feature(layer_->GetLayerDefn());
+    feature.SetGeometry(&polygon);
+    add(feature);
   }
 
-  void add_line(std::span<const WorldPoint> points, double elevation) override {
-    take_space(points.size());
-    if (is_lonlat_) check_lonlat(points);
-    OGRLineString line;
-    line.setNumPoints(static_cast<int>(points.size()), FALSE);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      line.setPoint(static_cast<int>(i), points[i][0], points[i][1], points[i][2]);
+  void add_line(const ContourLine& line) override {
+    take_space(line.points.size());
+    if (is_lonlat_) check_lonlat(line.points);
+    OGRFeature feature(layer_->GetLayerDefn());
+    if (is_dxf_) {
+      feature.SetField(kDxfLayer, line.is_index ? kIndexLayer : kIntermediateLayer);
+    } else {
+      feature.SetField(kElevation, line.elevation);
+      feature.SetField(kIndex, line.is_index ? 1 : 0);
     }
-    add(line, &elevation);
+    const bool is_closed = line.points.front() == line.points.back();
+    if (is_dxf_ && is_closed) {
+      // The driver gives the polyline of a ring the flag that it is closed, so that its last point
+      // need not be the first one again.
+      OGRLinearRing ring;
+      set_points(ring, line.points.first(line.points.size() - 1));
+      feature.SetGeometry(&ring);
+    } else {
+      OGRLineString open;
+      set_points(open, line.points);
+      feature.SetGeometry(&open);
+    }
+    add(feature);
   }
 
   void finish() override {
@@ -100,7 +149,9 @@ class OgrLayer : public VectorLayer {
     if (in_transaction_ && file_->CommitTransaction() != OGRERR_NONE) fail(gdal_reason());
     file_.reset();  // closing writes what is left: only now can the disk be full
     if (gdal_failed()) fail(gdal_reason());
-    if (is_json_ && !ends_as_json(path_)) fail("its end is missing; is the disk full?");
+    if (is_text() && !ends_with(path_, is_json_ ? "}" : "EOF")) {
+      fail("its end is missing; is the disk full?");
+    }
   }
 
  private:
@@ -115,7 +166,7 @@ class OgrLayer : public VectorLayer {
       crs = horizontal_part(crs);
       is_lonlat_ = !options.as_they_are && crs.IsGeographic() != 0;
       has_crs = has_crs && !options.as_they_are;
-      if (!options.as_they_are) how.insert(how.begin(), "RFC7946=YES");
+      how.insert(how.begin(), options.as_they_are ? "COORDINATE_PRECISION=7" : "RFC7946=YES");
     }
     if (options.driver == "GPKG" && !has_crs) {
       // By this name the driver knows what has the number -1. Without a system it would write 0,
@@ -127,12 +178,30 @@ class OgrLayer : public VectorLayer {
                                 options.lines ? wkbLineString25D : wkbPolygon25D,
                                 const_cast<char**>(how.data()));
     if (layer_ == nullptr) fail(gdal_reason());
-    if (options.lines) {
-      OGRFieldDefn field(kElevation, OFTReal);
-      if (layer_->CreateField(&field) != OGRERR_NONE) fail(gdal_reason());
+    if (options.lines && !is_dxf_) {
+      create_field(kElevation, OFTReal);
+      create_field(kIndex, OFTInteger);
     }
     for (const auto& [name, text] : options.metadata) {
       layer_->SetMetadataItem(name.c_str(), text.c_str());
+    }
+  }
+
+  void create_field(const char* name, OGRFieldType type) {
+    OGRFieldDefn field(name, type);
+    if (std::string_view(name) == kIndex) field.SetWidth(1);
+    if (layer_->CreateField(&field) != OGRERR_NONE) fail(gdal_reason());
+  }
+
+  /// Whether the driver writes text, of which it does not notice that it cannot.
+  [[nodiscard]] bool is_text() const { return is_json_ || is_dxf_; }
+
+  void set_points(OGRLineString& line, std::span<const WorldPoint> points) const {
+    line.setNumPoints(static_cast<int>(points.size()), FALSE);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double x = is_rounded_ ? rounded(points[i][0]) : points[i][0];
+      const double y = is_rounded_ ? rounded(points[i][1]) : points[i][1];
+      line.setPoint(static_cast<int>(i), x, y, points[i][2]);
     }
   }
 
@@ -148,19 +217,15 @@ class OgrLayer : public VectorLayer {
     }
   }
 
-  void add(const OGRGeometry& geometry, const double* elevation) {
+  void add(OGRFeature& feature) {
     forget_gdal_errors();
-    OGRFeature feature(layer_->GetLayerDefn());
-    feature.SetGeometry(&geometry);
-    if (elevation != nullptr) feature.SetField(0, *elevation);
-    if (layer_->CreateFeature(&feature) != OGRERR_NONE) {
+    if (layer_->CreateFeature(&feature) != OGRERR_NONE || (is_dxf_ && gdal_failed())) {
       // GDAL's driver for GeoJSON refuses nothing but places.
       if (is_json_) fail_for_place(gdal_reason());
       fail(gdal_reason());
     }
     ++features_;
-    // GDAL's driver for GeoJSON does not notice that its writes fail.
-    if (is_json_ && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
+    if (is_text() && features_ % kFeaturesPerLook == 0 && disk_is_full(path_)) {
       fail("the disk is full", ENOSPC);
     }
     if (in_transaction_ && features_ % kFeaturesPerTransaction == 0 &&
@@ -194,7 +259,10 @@ class OgrLayer : public VectorLayer {
   std::string path_;
   bool is_shapefile_;
   bool is_json_;
+  bool is_dxf_;
+  bool is_rounded_;         ///< coordinates have no unit that tells how many digits make sense
   bool is_lonlat_ = false;  ///< coordinates have to be longitude and latitude as they come
+  std::unique_ptr<DxfTemplate> dxf_template_;  ///< the driver reads it when it closes the file
   GDALDatasetUniquePtr file_;
   OGRLayer* layer_ = nullptr;  // owned by file_
   bool in_transaction_ = false;

@@ -44,6 +44,13 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
       scratch_(context.state().scratch(context)),
       writes_file_(is_first_process(context)) {
   check_max_edge(options_.max_edge);
+  if (options_.index == 0) {
+    throw InvalidArgument("index is 0, but every so many-th line is an index contour: 1 at least");
+  }
+  if (options_.min_length && !(*options_.min_length > 0)) {
+    throw InvalidArgument(
+        fmt::format("min_length is {}, but must be above 0", *options_.min_length));
+  }
   if (!writes_file_) return;
   check_can_create(disk(), path_);
   tell_lost_layers(format_, path_, context);
@@ -61,6 +68,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
   contours_ = {.levels = levels_,
                .lattice = start.header.lattice,
                .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
+               .min_length = options_.min_length,
                .memory = own_memory(context().memory())};
   return *begin_again();
 }
@@ -74,7 +82,8 @@ BlockSink* ContourFile::begin_again() {
     lines_.emplace(*scratch_);
   }
   return &writer_.emplace(
-      contours_, [this](std::span<const Point<2>> points, double height) { add(points, height); },
+      contours_,
+      [this](std::span<const Point<2>> points, std::int64_t level) { add(points, level); },
       *scratch_);
 }
 
@@ -102,11 +111,13 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
   return true;
 }
 
-void ContourFile::add(std::span<const Point<2>> points, double height) {
-  if (lines_) return lines_->add(points, height);
+void ContourFile::add(std::span<const Point<2>> points, std::int64_t level) {
+  if (lines_) return lines_->add(points, level);
+  const double height = levels_.height(level);
   line_.clear();
   for (const Point<2>& point : points) line_.push_back({point[0], point[1], height});
-  file_->layer().add_line(line_, height);
+  file_->layer().add_line(
+      {.points = line_, .elevation = height, .is_index = levels_.is_index(level, options_.index)});
   report_.points += points.size();
 }
 
@@ -122,11 +133,12 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
   all.highest = writer_->highest();
   take_contours(
       *writer_, others,
-      [this](std::span<const Point<2>> points, double height) { add(points, height); },
+      [this](std::span<const Point<2>> points, std::int64_t level) { add(points, level); },
       [&all](const ContourStatistics& statistics) {
         all.lowest = std::min(all.lowest, statistics.lowest);
         all.highest = std::max(all.highest, statistics.highest);
         all.lines += statistics.lines;
+        all.short_lines += statistics.short_lines;
         all.spilled_bytes += statistics.spilled_bytes;
       });
   writer_->finish(report.mesh);
@@ -138,6 +150,7 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
   report.write_seconds = watch.end(all.lines);
   report.left_out += writer_->left_out();
   report_.lines = all.lines;
+  report_.short_lines = all.short_lines + writer_->short_lines();
   report_.lowest = all.lowest;
   report_.highest = all.highest;
   report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();

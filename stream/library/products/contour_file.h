@@ -40,7 +40,7 @@ class ContourFile final : public OwnSink<ContourSink> {
   BlockSink& open(const MeshStart& start) override;
 
   [[nodiscard]] bool keeps_coordinates(const MeshStart& start) const;
-  void add(std::span<const Point<2>> points, double height);
+  void add(std::span<const Point<2>> points, std::int64_t level);
 
   std::string path_;
   const VectorFormat& format_;

@@ -19,7 +19,7 @@
 namespace spillway::test {
 namespace {
 
-using Line = std::pair<double, std::vector<Point<2>>>;
+using Line = std::pair<std::int64_t, std::vector<Point<2>>>;
 
 constexpr std::uint64_t kSide = 60;  ///< triangles of a square grid
 
@@ -47,9 +47,9 @@ class Process {
   explicit Process(std::uint64_t memory = 1 << 20)
       : writer_(
             {.levels = Levels::every(0.5, 0), .lattice = {}, .memory = memory},
-            [this](std::span<const Point<2>> points, double height) {
-              store_.add(points, height);
-              add(points, height);
+            [this](std::span<const Point<2>> points, std::int64_t level) {
+              store_.add(points, level);
+              add(points, level);
             },
             *scratch_) {}
 
@@ -64,8 +64,8 @@ class Process {
     writer_.take_merged({.mesh = mesh, .imported_vertices = vertices});
   }
 
-  void add(std::span<const Point<2>> points, double height) {
-    lines_.emplace_back(height, std::vector<Point<2>>(points.begin(), points.end()));
+  void add(std::span<const Point<2>> points, std::int64_t level) {
+    lines_.emplace_back(level, std::vector<Point<2>>(points.begin(), points.end()));
   }
 
   [[nodiscard]] ContourWriter& writer() { return writer_; }
@@ -139,8 +139,8 @@ TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheLinesOfOneProcess) {
       std::size_t figures_taken = 0;
       take_contours(
           processes[0].writer(), others,
-          [&](std::span<const Point<2>> points, double height) {
-            processes[0].add(points, height);
+          [&](std::span<const Point<2>> points, std::int64_t level) {
+            processes[0].add(points, level);
           },
           [&](const ContourStatistics&) { ++figures_taken; });
       EXPECT_EQ(processes[0].finish(), expected) << count << " processes";
@@ -180,7 +180,7 @@ TEST(ContourShares, AreNumberedAsTheWholeMesh) {
   double lowest = below.writer().lowest();
   take_contours(
       below.writer(), others,
-      [&](std::span<const Point<2>> points, double height) { below.add(points, height); },
+      [&](std::span<const Point<2>> points, std::int64_t level) { below.add(points, level); },
       [&](const ContourStatistics& statistics) { lowest = std::min(lowest, statistics.lowest); });
   EXPECT_EQ(below.finish(), lines_of_one());
   EXPECT_EQ(lowest, std::min(below.writer().lowest(), above.writer().lowest()));

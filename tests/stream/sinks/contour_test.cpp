@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <utility>
@@ -22,19 +23,22 @@ using Line = std::vector<Point<2>>;
 struct Contours {
   std::multimap<double, Line> lines;  ///< by height
   std::uint64_t spilled = 0;
+  std::uint64_t shorter = 0;  ///< lines that were left out for their length
 };
 
 /// Triangles of a square grid over [0, n] x [0, n], heights given by a function; as blocks of so
 /// many triangles, in an order given by a seed.
 template <typename Height>
 Contours contours_of_grid(int n, const Height& height, double interval, std::size_t block_size,
-                          unsigned seed, std::uint64_t memory = 1 << 20) {
+                          unsigned seed, std::uint64_t memory = 1 << 20,
+                          std::optional<double> min_length = {}) {
   const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
   Contours result;
+  const Levels levels = Levels::every(interval, 0);
   ContourWriter writer(
-      {.levels = Levels::every(interval, 0), .lattice = {}, .memory = memory},
-      [&](std::span<const Point<2>> points, double level) {
-        result.lines.emplace(level, Line(points.begin(), points.end()));
+      {.levels = levels, .lattice = {}, .min_length = min_length, .memory = memory},
+      [&](std::span<const Point<2>> points, std::int64_t level) {
+        result.lines.emplace(levels.height(level), Line(points.begin(), points.end()));
       },
       *scratch);
   const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
@@ -72,6 +76,8 @@ Contours contours_of_grid(int n, const Height& height, double interval, std::siz
   }
   writer.finish({});
   result.spilled = writer.spilled_bytes();
+  result.shorter = writer.short_lines();
+  EXPECT_EQ(writer.lines(), result.lines.size());
   return result;
 }
 
@@ -147,6 +153,30 @@ TEST(Contours, GoThroughTheDiskWhenTheyOutgrowTheirMemory) {
   EXPECT_TRUE(std::ranges::is_permutation(spilled.lines, in_memory.lines));
 }
 
+double length(const Line& line) {
+  double sum = 0;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    sum += std::hypot(line[i][0] - line[i - 1][0], line[i][1] - line[i - 1][1]);
+  }
+  return sum;
+}
+
+TEST(Contours, ShorterThanTheLeastLengthAreLeftOutAndCounted) {
+  const auto wavy = [](double x, double y) { return 7 * std::sin(x / 5) * std::cos(y / 7); };
+  const Contours all = contours_of_grid(50, wavy, 0.5, 100, 1);
+  const auto of_length = sorted(contours_of_grid(50, wavy, 0.5, 100, 1, 1 << 20, 25));
+  std::vector<std::pair<double, Line>> expected;
+  for (const auto& line : sorted(all)) {
+    if (length(line.second) >= 25) expected.push_back(line);
+  }
+  EXPECT_EQ(of_length, expected);
+  EXPECT_LT(expected.size(), all.lines.size());
+  EXPECT_TRUE(std::ranges::any_of(
+      expected, [](const auto& line) { return line.second.front() == line.second.back(); }));
+  EXPECT_EQ(contours_of_grid(50, wavy, 0.5, 7, 3, 1 << 20, 25).shorter,
+            all.lines.size() - expected.size());
+}
+
 /// The least sequence of all that a ring has, by trying every beginning.
 Line least_rotation(const Line& ring) {
   Line least(ring.begin(), ring.end() - 1);
@@ -215,6 +245,16 @@ TEST(Levels, RefuseAnIntervalThatHeightsCannotTellApart) {
 TEST(Levels, HaveNoMinusZero) {
   EXPECT_FALSE(std::signbit(Levels::of_list({-0.0}).height(0)));
   EXPECT_FALSE(std::signbit(Levels::every(0.5, -0.0).height(0)));
+}
+
+TEST(Levels, EverySoManyFromTheBaseIsAnIndex) {
+  const Levels levels = Levels::every(2, 1);
+  for (const std::int64_t number : {-10, -5, 0, 5}) EXPECT_TRUE(levels.is_index(number, 5));
+  for (const std::int64_t number : {-6, -4, -1, 1, 4, 6}) EXPECT_FALSE(levels.is_index(number, 5));
+  EXPECT_TRUE(levels.is_index(7, 1));
+  EXPECT_TRUE(levels.is_index(0, ~std::uint64_t{0}));
+  EXPECT_FALSE(levels.is_index(7, ~std::uint64_t{0}));
+  EXPECT_FALSE(Levels::of_list({0, 5}).is_index(0, 5));
 }
 
 TEST(Levels, RefuseWhatMakesNoSense) {

@@ -115,11 +115,51 @@ TEST_F(Contour, ThatMeetThemselvesDependOnNoTilesThreadsAndOrders) {
   }
 }
 
-TEST_F(Contour, WritesGeoPackagesAndShapefiles) {
+TEST_F(Contour, EverySoManyFromTheBaseAreIndexContours) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
-  space.succeed(
-      "spillway contour cone.txt -o c.gpkg --interval 5 && spillway contour cone.txt -o c.shp "
-      "--interval 5");
+  const auto index = [&](const std::string& options) {
+    space.succeed("spillway contour cone.txt -o c.geojson --force-crs " + options);
+    std::set<double> heights;
+    for (const nlohmann::json& line : features(space, "c.geojson")) {
+      if (line["properties"]["index"] == 1)
+        heights.insert(line["properties"]["elevation"].get<double>());
+    }
+    return heights;
+  };
+  EXPECT_EQ(index("--interval 1 --base 2.5"), (std::set<double>{-7.5, -2.5, 2.5, 7.5, 12.5, 17.5}));
+  EXPECT_EQ(index("--interval 1 --index 10"), (std::set<double>{0, 10}));
+  EXPECT_EQ(index("--levels 0,5,10"), (std::set<double>{}));
+}
+
+TEST_F(Contour, ShorterThanTheLeastLengthAreLeftOutAndTold) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const std::string run = "spillway contour cone.txt -o c.geojson --force-crs --interval 5 ";
+  space.succeed(run);
+  const std::size_t all = features(space, "c.geojson").size();
+  // The ring at 15 has a radius of 5.
+  const Result some = space.run(run + "--base 2.5 --min-length 40 --stats s.json");
+  EXPECT_THAT(some.err, HasSubstr(" lines left out: shorter than --min-length 40\n"));
+  const auto stats = nlohmann::json::parse(space.read("s.json"))["contours"];
+  EXPECT_EQ(stats["lines"], features(space, "c.geojson").size());
+  EXPECT_GT(stats["short_lines"], 0);
+  for (const nlohmann::json& line : features(space, "c.geojson")) {
+    EXPECT_LT(line["properties"]["elevation"], 15);
+  }
+  const Result none = space.run(run + "-q --min-length 1e6");
+  EXPECT_EQ(none.exit_code, 0);
+  EXPECT_EQ(none.err.substr(none.err.find("warning: no lines")),
+            "warning: no lines: " + std::to_string(all) +
+                " lines left out: shorter than --min-length 1000000\n");
+}
+
+TEST_F(Contour, WritesGeoPackagesShapefilesAndDrawings) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  for (const std::string name : {"c.gpkg", "c.shp", "c.dxf"}) {
+    space.succeed("spillway contour cone.txt --interval 5 -o " + name);
+  }
+  EXPECT_THAT(space.read("c.dxf"), HasSubstr("\nCONTOUR-INDEX\n"));
+  EXPECT_THAT(space.read("c.dxf"), HasSubstr("\nCONTOUR-INTERMEDIATE\n"));
+  EXPECT_FALSE(space.has("c.dxf.tmp"));
   EXPECT_THAT(space.read("c.gpkg"), HasSubstr("SQLite format 3"));
   EXPECT_TRUE(space.has("c.shp"));
   EXPECT_TRUE(space.has("c.dbf"));
@@ -171,7 +211,10 @@ TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
   EXPECT_THAT(error_of("-o c.gpkg --interval -1"),
               HasSubstr("--interval: \"-1\" is not a number above 0"));
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --levels 3"), HasSubstr("no effect with --levels"));
-  EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp, .geojson or .json"));
+  EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp, .geojson, .json or .dxf"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval 1 --index 0"), HasSubstr("--index"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval 1 --min-length 0"),
+              HasSubstr("--min-length: \"0\" is not a number above 0"));
   EXPECT_EQ(space.names(), std::vector<std::string>{"cone.txt"});
 }
 

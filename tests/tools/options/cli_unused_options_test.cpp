@@ -118,6 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                "--base has no effect with --levels"},
         Unused{"IntervalWithLevels", "contour in.las -o a.gpkg --levels 380 --interval 5",
                "--interval has no effect with --levels"},
+        Unused{"IndexWithLevels", "contour in.las -o a.gpkg --levels 380 --index 5",
+               "--index has no effect with --levels"},
         Unused{"DimensionThereIsNot", "contour tin.ply -o a.gpkg --levels 380 --dim 3",
                "contour has no option --dim"},
         Unused{"PointOptionsOfAMesh",

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -207,7 +208,7 @@ TEST(VectorMesh, OnlyTrianglesAreRead) {
   options.layer = "contours";
   options.lines = true;
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<WorldPoint>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}, 5);
+  layer->add_line({.points = std::vector<WorldPoint>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}});
   layer->finish();
   EXPECT_THAT(error_of([&] { read_mesh(disk(), options.path); }),
               HasSubstr("feature 1: it is a LINESTRING, and only triangles are read"));
@@ -228,10 +229,13 @@ TEST(VectorMesh, ContoursAsGeoJsonAreLongitudeAndLatitudeWithTheirHeight) {
   // In feet as heights are: these stay what they are.
   const VectorLayerOptions options = lines_as_json(folder, "EPSG:32632+6360");
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<WorldPoint>{{500000, 0, 2.5}, {500000, 1000, 2.5}}, 2.5);
+  layer->add_line({.points = std::vector<WorldPoint>{{500000, 0, 2.5}, {500000, 1000, 2.5}},
+                   .elevation = 2.5,
+                   .is_index = true});
   layer->finish();
   const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
   EXPECT_EQ(json["features"][0]["properties"]["elevation"], 2.5);
+  EXPECT_EQ(json["features"][0]["properties"]["index"], 1);
   const auto& points = json["features"][0]["geometry"]["coordinates"];
   EXPECT_EQ(points[0], nlohmann::json({9.0, 0.0, 2.5}));
   EXPECT_NEAR(points[1][1].get<double>(), 0.0090471, 1e-6);
@@ -244,12 +248,65 @@ TEST(VectorMesh, ContoursAsGeoJsonMayBeAsTheyAre) {
   VectorLayerOptions options = lines_as_json(folder, "");
   options.as_they_are = true;
   const auto layer = gdal().create_layer(options);
-  layer->add_line(std::vector<WorldPoint>{{500000, 0, 2.5}, {500000.25, 1000, 2.5}}, 2.5);
+  layer->add_line({.points = std::vector<WorldPoint>{{500000.0004, 0.123456789, 2.5},
+                                                     {500000.2506, -1000.0006, 2.5}},
+                   .elevation = 2.5});
   layer->finish();
   const nlohmann::json json = nlohmann::json::parse(content_of(options.path));
-  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"][1],
-            nlohmann::json({500000.25, 1000.0, 2.5}));
+  // 3 decimals, or 7 where they may be degrees.
+  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"],
+            nlohmann::json({{500000.0, 0.1234568, 2.5}, {500000.251, -1000.001, 2.5}}));
+  EXPECT_EQ(json["features"][0]["properties"]["index"], 0);
   EXPECT_FALSE(json.contains("crs"));
+}
+
+/// The values of a group code that follow a word of a DXF file.
+std::vector<std::string> groups(const std::string& text, const std::string& word,
+                                const std::string& code) {
+  std::vector<std::string> values;
+  std::istringstream lines(text.substr(std::min(text.find("\n" + word + "\n"), text.size())));
+  std::string key;
+  std::string value;
+  std::getline(lines, key);
+  std::getline(lines, key);
+  while (std::getline(lines, key) && std::getline(lines, value) && key != "  0") {
+    if (key == code) values.push_back(value);
+  }
+  return values;
+}
+
+TEST(VectorMesh, ContoursAsDxfHaveLayersAndTheUnitOfTheirSystem) {
+  TestFolder folder;
+  const auto written = [&](const std::string& crs, bool is_index) {
+    VectorLayerOptions options;
+    options.path = options.name = folder.file("contours.dxf");
+    options.driver = "DXF";
+    options.layer = "contours";
+    options.lines = true;
+    options.crs = crs;
+    std::filesystem::remove(options.path);
+    const auto layer = gdal().create_layer(options);
+    layer->add_line(
+        {.points =
+             std::vector<WorldPoint>{
+                 {600000.125, 1, 2.5}, {600001, 2, 2.5}, {600000, 3, 2.5}, {600000.125, 1, 2.5}},
+         .elevation = 2.5,
+         .is_index = is_index});
+    layer->finish();
+    return content_of(options.path);
+  };
+  using ::testing::ElementsAre;
+  const std::string text = written("EPSG:32632", true);
+  EXPECT_THAT(groups(text, "LWPOLYLINE", "  8"), ElementsAre("CONTOUR-INDEX"));
+  EXPECT_THAT(groups(text, "LWPOLYLINE", " 38"), ElementsAre("2.5"));
+  EXPECT_THAT(groups(text, "LWPOLYLINE", " 70"), ElementsAre("1")) << "it is closed";
+  EXPECT_THAT(groups(text, "LWPOLYLINE", " 10"), ElementsAre("600000.125", "600001", "600000"));
+  EXPECT_THAT(text, HasSubstr("$INSUNITS\n 70\n     6\n"));
+  EXPECT_THAT(groups(written("EPSG:2927", false), "LWPOLYLINE", "  8"),
+              ElementsAre("CONTOUR-INTERMEDIATE"));
+  EXPECT_THAT(written("EPSG:2927", false), HasSubstr("$INSUNITS\n 70\n    21\n"));
+  EXPECT_THAT(written("EPSG:4326", false), HasSubstr("$INSUNITS\n 70\n     0\n"));
+  EXPECT_THAT(written("", false), HasSubstr("$INSUNITS\n 70\n     0\n"));
 }
 
 TEST(VectorMesh, GeoJsonRefusesWhatIsNoPlaceOnTheEarth) {
@@ -259,7 +316,7 @@ TEST(VectorMesh, GeoJsonRefusesWhatIsNoPlaceOnTheEarth) {
     std::filesystem::remove(options.path);
     const auto layer = gdal().create_layer(options);
     const std::vector<WorldPoint> far = {{1e9, 5e9, 1}, {2e9, 5e9, 1}};
-    EXPECT_THAT(error_of([&] { layer->add_line(far, 1); }),
+    EXPECT_THAT(error_of([&] { layer->add_line({.points = far, .elevation = 1}); }),
                 HasSubstr("do not become longitude and latitude"))
         << crs;
   }
