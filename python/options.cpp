@@ -182,7 +182,9 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("foreign_crs", &ContourOptions::foreign_crs)
       .def_readwrite("max_edge", &ContourOptions::max_edge)
       .def_readwrite("index", &ContourOptions::index)
-      .def_readwrite("min_length", &ContourOptions::min_length);
+      .def_readwrite("min_length", &ContourOptions::min_length)
+      .def_readwrite("smooth", &ContourOptions::smooth)
+      .def_readwrite("simplify", &ContourOptions::simplify);
   py::class_<PictureOptions>(module, "PictureOptions")
       .def(py::init())
       .def_readwrite("size", &PictureOptions::size)

@@ -26,6 +26,11 @@ struct ContourOptions {
   std::uint64_t index = 5;
   /// Leave out lines that are shorter, closed ones too, in units of x and y of the terrain.
   std::optional<double> min_length{};
+  /// Smooth lines: a point of one is no farther than this from where the surface has its height.
+  std::optional<double> smooth{};
+  /// Lines of few points, no farther than this from those with all. Neither makes lines of different
+  /// heights meet. Both in units of x and y.
+  std::optional<double> simplify{};
 };
 
 /// What became of the lines.

@@ -253,6 +253,8 @@ def contour(
     levels: Sequence[float] | None = None,
     index: int | None = None,
     min_length: float | None = None,
+    smooth: float | None = None,
+    simplify: float | None = None,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> ContourReport:
@@ -277,6 +279,10 @@ def contour(
         Every so many-th line from the base is an index contour; 5 by default. Not with `levels`.
     min_length : float, optional
         Leave out lines that are shorter, in units of x and y.
+    smooth : float, optional
+        Smooth lines, moving them by at most this. Lines of different heights do not meet.
+    simplify : float, optional
+        Leave out points of lines, moving these by at most this, likewise.
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -301,6 +307,7 @@ def contour(
         raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
     put_all(how, {"interval": interval, "base": base, "levels": levels})
     put_all(how, {"index": index, "min_length": min_length})
+    put_all(how, {"smooth": smooth, "simplify": simplify})
     put_all(how, {"max_edge": options.get("max_edge")})
     how.foreign_crs = bool(options.get("force_crs"))
     run = make_run(options)

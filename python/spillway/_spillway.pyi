@@ -146,6 +146,8 @@ class ContourOptions:
     max_edge: float | None
     index: int
     min_length: float | None
+    smooth: float | None
+    simplify: float | None
 
 class PictureOptions:
     size: int

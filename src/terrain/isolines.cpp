@@ -13,6 +13,11 @@ namespace spillway::terrain {
 namespace {
 
 constexpr std::int64_t kMostInTriangle = 1'000'000;
+/// How far a portal reaches of the way to the next level: less than a half, so that there is
+/// something between the portals of two levels.
+constexpr double kTowardsNext = 0.45;
+/// And to the end of its edge, so that there is something between portals of the same level there.
+constexpr double kTowardsEnd = 0.9;
 /// Numbers of levels stay exact in double.
 constexpr double kLargestNumber = 0x1p52;
 
@@ -24,6 +29,30 @@ Point<2> crossing_point(const Point<3>& one, const Point<3>& other, double heigh
   if (b[2] == height) return {b[0] + 0.0, b[1] + 0.0};
   const double share = (height - a[2]) / (b[2] - a[2]);
   return {a[0] + share * (b[0] - a[0]) + 0.0, a[1] + share * (b[1] - a[1]) + 0.0};
+}
+
+/// The end of a portal on the side of an edge's end: `rise` is the height from the crossing to
+/// there, `most` how much of it the portal may have.
+Point<2> portal_end(const Point<2>& at, const Point<3>& end, double rise, double most,
+                    double slide) {
+  if (!(rise > 0)) return at;
+  const Point<2> way = {end[0] - at[0], end[1] - at[1]};
+  const double length = std::hypot(way[0], way[1]);
+  if (!(length > 0)) return at;
+  const double share = std::min({kTowardsEnd, most / rise, slide / length});
+  return {at[0] + share * way[0] + 0.0, at[1] + share * way[1] + 0.0};
+}
+
+/// The portal of a level on an edge, of which the first end is above it and the other one below.
+Portal portal_at(const Point<3>& above, const Point<3>& below, double height, double most,
+                 double slide) {
+  Portal portal;
+  portal.at = portal.left = portal.right = crossing_point(above, below, height);
+  if (slide > 0) {
+    portal.left = portal_end(portal.at, above, above[2] - height, most, slide);
+    portal.right = portal_end(portal.at, below, height - below[2], most, slide);
+  }
+  return portal;
 }
 
 Crossing crossing(const Corner& one, const Corner& other, std::int64_t level) {
@@ -61,6 +90,15 @@ Levels Levels::of_list(std::vector<double> heights) {
 double Levels::height(std::int64_t number) const {
   return interval_ == 0 ? list_[static_cast<std::size_t>(number)]
                         : base_ + static_cast<double>(number) * interval_;
+}
+
+double Levels::distance_to_next(std::int64_t number) const {
+  double distance = std::numeric_limits<double>::infinity();
+  const double here = height(number);
+  const auto end = static_cast<std::int64_t>(list_.size());
+  if (interval_ != 0 || number > 0) distance = here - height(number - 1);
+  if (interval_ != 0 || number + 1 < end) distance = std::min(distance, height(number + 1) - here);
+  return distance;
 }
 
 bool Levels::is_index(std::int64_t number, std::uint64_t every) const {
@@ -101,7 +139,7 @@ Levels::Range Levels::between(double low, double high) const {
   return {range.first, std::max(range.first, range.end)};
 }
 
-void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
+void append_segments(const std::array<Corner, 3>& corners, const Levels& levels, double slide,
                      std::vector<IsoSegment>& segments) {
   const auto [low, high] =
       std::minmax({corners[0].point[2], corners[1].point[2], corners[2].point[2]});
@@ -115,6 +153,7 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
   }
   for (std::int64_t level = range.first; level < range.end; ++level) {
     const double height = levels.height(level);
+    const double most = slide > 0 ? kTowardsNext * levels.distance_to_next(level) : 0;
     IsoSegment segment;
     for (std::size_t i = 0; i < 3; ++i) {
       const Corner& here = corners[i];
@@ -123,8 +162,8 @@ void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
       if (above == (next.point[2] >= height)) continue;
       // Higher ground to the left: in over the edge that goes down, out over the one that goes up.
       (above ? segment.from : segment.to) = crossing(here, next, level);
-      (above ? segment.from_point : segment.to_point) =
-          crossing_point(here.point, next.point, height);
+      (above ? segment.from_portal : segment.to_portal) =
+          portal_at((above ? here : next).point, (above ? next : here).point, height, most, slide);
     }
     segments.push_back(segment);
   }

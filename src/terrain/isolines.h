@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "src/geometry/point.h"
+#include "src/terrain/line_shape.h"
 
 namespace spillway::terrain {
 
@@ -20,6 +21,8 @@ class Levels {
   static Levels of_list(std::vector<double> heights);
 
   [[nodiscard]] double height(std::int64_t number) const;
+  /// The lesser one of the distances to the levels above and below; infinite if there are none.
+  [[nodiscard]] double distance_to_next(std::int64_t number) const;
   /// Whether a level is one of every so many, counted from the base; of a list none is.
   [[nodiscard]] bool is_index(std::int64_t number, std::uint64_t every) const;
 
@@ -58,13 +61,15 @@ struct Corner {
 struct IsoSegment {
   Crossing from;
   Crossing to;
-  Point<2> from_point;
-  Point<2> to_point;
+  Portal from_portal;
+  Portal to_portal;
 };
 
-/// Appends the segments of all levels in a triangle whose corners run counter-clockwise. Throws
-/// Failure if there are more than a million of them: the interval must be a mistake.
-void append_segments(const std::array<Corner, 3>& corners, const Levels& levels,
+/// Appends the segments of all levels in a triangle whose corners run counter-clockwise. Portals
+/// reach no farther than `slide`, and less far than half of the way to the next level and to the
+/// ends of the edge. Throws Failure if there are more than a million of them: the interval must be
+/// a mistake.
+void append_segments(const std::array<Corner, 3>& corners, const Levels& levels, double slide,
                      std::vector<IsoSegment>& segments);
 
 }  // namespace spillway::terrain

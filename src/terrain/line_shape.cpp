@@ -74,9 +74,40 @@ void smooth(std::vector<Portal>& portals, double distance, bool is_closed) {
     }
     if (is_closed) moved.back() = moved.front();
     places = moved;
-    for (std::size_t i = first; i + first < size; ++i) portals[i].at = at_place(parts[i], places[i]);
+    for (std::size_t i = first; i + first < size; ++i)
+      portals[i].at = at_place(parts[i], places[i]);
   }
 }
+
+/// Points of a funnel from its apex on, without it; those before `begin_` are passed.
+class Chain {
+ public:
+  [[nodiscard]] bool empty() const { return begin_ == points_.size(); }
+  [[nodiscard]] const Point<2>& front() const { return points_[begin_]; }
+  [[nodiscard]] auto begin() const { return points_.begin() + static_cast<std::ptrdiff_t>(begin_); }
+  [[nodiscard]] auto end() const { return points_.end(); }
+  void push_back(const Point<2>& point) { points_.push_back(point); }
+  void pop_front() {
+    if (++begin_ == points_.size()) clear();
+  }
+  void pop_back() {
+    points_.pop_back();
+    if (begin_ == points_.size()) clear();
+  }
+  [[nodiscard]] const Point<2>& back() const { return points_.back(); }
+  /// The point before the last one, or the apex.
+  [[nodiscard]] const Point<2>& before_back(const Point<2>& apex) const {
+    return points_.size() - begin_ > 1 ? points_[points_.size() - 2] : apex;
+  }
+
+ private:
+  void clear() {
+    points_.clear();
+    begin_ = 0;
+  }
+  std::vector<Point<2>> points_;
+  std::size_t begin_ = 0;
+};
 
 /// The shortest paths from its apex to the ends of the last portal: two chains that bend away from
 /// each other.
@@ -97,36 +128,6 @@ class Funnel {
   }
 
  private:
-  /// Points from the apex on, without it; those before `begin_` are passed.
-  class Chain {
-   public:
-    [[nodiscard]] bool empty() const { return begin_ == points_.size(); }
-    [[nodiscard]] const Point<2>& front() const { return points_[begin_]; }
-    [[nodiscard]] auto begin() const { return points_.begin() + static_cast<std::ptrdiff_t>(begin_); }
-    [[nodiscard]] auto end() const { return points_.end(); }
-    void push_back(const Point<2>& point) { points_.push_back(point); }
-    void pop_front() {
-      if (++begin_ == points_.size()) clear();
-    }
-    void pop_back() {
-      points_.pop_back();
-      if (begin_ == points_.size()) clear();
-    }
-    [[nodiscard]] const Point<2>& back() const { return points_.back(); }
-    /// The point before the last one, or the apex.
-    [[nodiscard]] const Point<2>& before_back(const Point<2>& apex) const {
-      return points_.size() - begin_ > 1 ? points_[points_.size() - 2] : apex;
-    }
-
-   private:
-    void clear() {
-      points_.clear();
-      begin_ = 0;
-    }
-    std::vector<Point<2>> points_;
-    std::size_t begin_ = 0;
-  };
-
   /// `side`: 1 if the chain is the left one, -1 if it is the right one.
   void add(const Point<2>& point, Chain& chain, Chain& other, int side) {
     while (!chain.empty() &&

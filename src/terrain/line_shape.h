@@ -2,6 +2,7 @@
 // Lines that are smoother, or have fewer points, than where a level crosses the edges of a
 // triangulation, and never meet those of other levels: docs/contour.md.
 
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -21,10 +22,10 @@ struct LineTolerance {
 /// lines that pass each edge within its part do not meet. In front of who goes along the line, one
 /// end is to the left, the other one to the right.
 struct Portal {
-  Point<2> at;
-  Point<2> left;
-  Point<2> right;
-  bool operator==(const Portal&) const = default;
+  Point<2> at{};
+  Point<2> left{};
+  Point<2> right{};
+  auto operator<=>(const Portal&) const = default;
 };
 
 /// A line through portals, within its tolerance of where they are passed exactly: each pair of

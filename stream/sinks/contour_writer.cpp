@@ -19,7 +19,7 @@ ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolde
               sink(points, level);
             }
           },
-          options_.memory, scratch) {}
+          options_.memory, scratch, options_.tolerance) {}
 
 std::vector<WorldPoint> ContourWriter::in_output(std::span<const LatticePoint> vertices) const {
   std::vector<WorldPoint> points;
@@ -61,7 +61,7 @@ void ContourWriter::draw(const StreamNumbers& numbers, std::span<const WorldPoin
       continue;
     }
     segments_.clear();
-    append_segments(triangle, options_.levels, segments_);
+    append_segments(triangle, options_.levels, options_.tolerance.sum(), segments_);
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
   }
 }

@@ -12,6 +12,7 @@
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
+#include "src/terrain/line_shape.h"
 #include "stream/sinks/line_joiner.h"
 #include "stream/sinks/mesh_shares.h"
 
@@ -19,9 +20,10 @@ namespace spillway::stream {
 
 struct ContourSinkOptions {
   Levels levels = Levels::every(1, 0);
-  std::optional<IntegerLattice> lattice;  ///< of the vertices to come
+  std::optional<IntegerLattice> lattice{};  ///< of the vertices to come
   std::optional<double> max_edge{};    ///< leave out triangles with a longer edge, in output units
   std::optional<double> min_length{};  ///< leave out lines that are shorter, in output units
+  LineTolerance tolerance{};           ///< how far lines may be from where they are exactly
   std::uint64_t memory = 0;            ///< bytes for points of lines that are still open
 };
 

@@ -14,17 +14,19 @@ namespace {
 
 /// Fewer points of a line than these are not worth a place on the disk.
 constexpr std::size_t kLeastStored = 16;
+constexpr std::size_t kPortalPoints = 3;
 
 /// Where a ring must begin to come first in lexicographic order of its whole sequence of points:
 /// at its least point, and where it visits this several times, at the visit that goes on least.
 /// Two beginnings race; the one that loses rules out all that it has passed (Shiloach, "Fast
 /// canonization of circular strings", 1981).
-std::size_t least_beginning(std::span<const Point<2>> ring) {
+template <typename Place>
+std::size_t least_beginning(std::span<const Place> ring) {
   const std::size_t size = ring.size();
   std::size_t one = 0;
   std::size_t other = 1;
   for (std::size_t equal = 0; one < size && other < size && equal < size;) {
-    const auto at = [&](std::size_t begin) {
+    const auto at = [&](std::size_t begin) -> const Place& {
       const std::size_t place = begin + equal;
       return ring[place < size ? place : place - size];
     };
@@ -39,6 +41,15 @@ std::size_t least_beginning(std::span<const Point<2>> ring) {
   return std::min(one, other);
 }
 
+/// Turns a closed line, whose last place is its first one again, so that it begins as it must.
+template <typename Place>
+void begin_at_least(std::vector<Place>& line) {
+  line.pop_back();
+  const auto begin = static_cast<std::ptrdiff_t>(least_beginning(std::span<const Place>(line)));
+  std::rotate(line.begin(), line.begin() + begin, line.end());
+  line.push_back(line.front());
+}
+
 }  // namespace
 
 std::size_t CrossingHash::operator()(const Crossing& crossing) const {
@@ -46,8 +57,12 @@ std::size_t CrossingHash::operator()(const Crossing& crossing) const {
                mix64(crossing.edge[1] ^ mix64(static_cast<std::uint64_t>(crossing.level))));
 }
 
-LineJoiner::LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch)
-    : sink_(std::move(sink)), most_points_(memory / sizeof(Point<2>)), scratch_(scratch) {}
+LineJoiner::LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch,
+                       LineTolerance tolerance)
+    : sink_(std::move(sink)),
+      most_points_(memory / sizeof(Point<2>)),
+      scratch_(scratch),
+      tolerance_(tolerance) {}
 
 LineJoiner::Number LineJoiner::new_line() {
   if (free_.empty()) {
@@ -74,13 +89,13 @@ void LineJoiner::add(const IsoSegment& segment) {
     const Number number = before->second;
     ends_.erase(before);
     open_[number].end = segment.to;
-    append(open_[number].back, segment.to_point);
+    append_back(open_[number], segment.to_portal);
     enter(ends_, segment.to, number);
   } else if (before == ends_.end()) {
     const Number number = behind->second;
     begins_.erase(behind);
     open_[number].begin = segment.from;
-    append(open_[number].front, segment.from_point);
+    append_front(open_[number], segment.from_portal);
     enter(begins_, segment.from, number);
   } else {
     const Number first = before->second;
@@ -88,7 +103,7 @@ void LineJoiner::add(const IsoSegment& segment) {
     ends_.erase(before);
     begins_.erase(behind);
     if (first == second) {
-      append(open_[first].back, segment.to_point);
+      append_back(open_[first], segment.to_portal);
       give_out(std::move(open_[first]));
     } else {
       join(open_[first], std::move(open_[second]));
@@ -104,8 +119,8 @@ void LineJoiner::begin_line(const IsoSegment& segment) {
   Line& line = open_[number];
   line.begin = segment.from;
   line.end = segment.to;
-  append(line.back, segment.from_point);
-  append(line.back, segment.to_point);
+  append_back(line, segment.from_portal);
+  append_back(line, segment.to_portal);
   enter(begins_, line.begin, number);
   enter(ends_, line.end, number);
 }
@@ -171,9 +186,24 @@ void LineJoiner::number_from(std::uint64_t first) {
   }
 }
 
-void LineJoiner::append(std::vector<Point<2>>& points, const Point<2>& point) {
-  points.push_back(point);
-  ++points_in_memory_;
+void LineJoiner::append_back(Line& line, const Portal& portal) {
+  if (tolerance_.sum() == 0) {
+    line.back.push_back(portal.at);
+    ++points_in_memory_;
+  } else {
+    line.back.insert(line.back.end(), {portal.at, portal.left, portal.right});
+    points_in_memory_ += kPortalPoints;
+  }
+}
+
+void LineJoiner::append_front(Line& line, const Portal& portal) {
+  if (tolerance_.sum() == 0) {
+    line.front.push_back(portal.at);
+    ++points_in_memory_;
+  } else {
+    line.front.insert(line.front.end(), {portal.right, portal.left, portal.at});
+    points_in_memory_ += kPortalPoints;
+  }
 }
 
 void LineJoiner::enter(OpenEnds& ends, const Crossing& crossing, Number number) {
@@ -273,6 +303,21 @@ std::vector<Point<2>> LineJoiner::points_of(Line&& line) {
   return points;
 }
 
+/// A line in the shape that its tolerance permits; empty if it is a single point.
+std::vector<Point<2>> LineJoiner::shaped(std::span<const Point<2>> points) const {
+  std::vector<Portal> portals;
+  portals.reserve(points.size() / kPortalPoints);
+  for (std::size_t i = 0; i < points.size(); i += kPortalPoints) {
+    portals.push_back({points[i], points[i + 1], points[i + 2]});
+  }
+  const Point<2>& first = portals.front().at;
+  if (std::ranges::all_of(portals, [&](const Portal& portal) { return portal.at == first; })) {
+    return {};
+  }
+  if (portals.front() == portals.back()) begin_at_least(portals);
+  return shaped_line(portals, tolerance_);
+}
+
 /// Before points_of().
 void LineJoiner::count_out(const Line& line) {
   for (const Stretch& stretch : line.middle) points_in_memory_ -= stretch.points.size();
@@ -283,14 +328,10 @@ void LineJoiner::give_out(Line&& line) {
   count_out(line);
   const std::int64_t level = line.begin.level;
   std::vector<Point<2>> points = points_of(std::move(line));
+  if (tolerance_.sum() > 0) points = shaped(points);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 2) return;  // a summit just as high as the level
-  if (points.front() == points.back()) {
-    points.pop_back();
-    const auto begin = static_cast<std::ptrdiff_t>(least_beginning(points));
-    std::rotate(points.begin(), points.begin() + begin, points.end());
-    points.push_back(points.front());
-  }
+  if (points.front() == points.back()) begin_at_least(points);
   ++lines_;
   sink_(points, level);
 }

@@ -10,6 +10,7 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "src/terrain/isolines.h"
+#include "src/terrain/line_shape.h"
 
 namespace spillway::stream {
 
@@ -28,8 +29,10 @@ class LineJoiner {
   /// lexicographic order: so it begins at its least point.
   using Sink = std::function<void(std::span<const Point<2>> points, std::int64_t level)>;
 
-  /// `memory`: bytes for points of open lines. `scratch` must outlive it.
-  LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch);
+  /// `memory`: bytes for points of open lines. `scratch` must outlive it. With a tolerance lines
+  /// are given out in another shape (terrain/line_shape): a closed one begins at the crossing from
+  /// which the sequence of its portals is the least, before it gets this shape.
+  LineJoiner(Sink sink, std::uint64_t memory, ScratchFolder& scratch, LineTolerance tolerance = {});
 
   /// Throws Failure if the segment's triangle does not fit to those before it.
   void add(const IsoSegment& segment);
@@ -38,7 +41,7 @@ class LineJoiner {
   struct OpenLine {
     Crossing begin;
     Crossing end;
-    std::vector<Point<2>> points;
+    std::vector<Point<2>> points;  ///< with a tolerance three each: a portal's
   };
   /// What another joiner has joined. Throws Failure likewise.
   void add(OpenLine&& part);
@@ -79,7 +82,8 @@ class LineJoiner {
 
   Number new_line();
   void begin_line(const IsoSegment& segment);
-  void append(std::vector<Point<2>>& points, const Point<2>& point);
+  void append_back(Line& line, const Portal& portal);
+  void append_front(Line& line, const Portal& portal);
   static void enter(OpenEnds& ends, const Crossing& crossing, Number number);
   void join(Line& first, Line&& second);
   static void gather_front(Line& line);
@@ -89,10 +93,12 @@ class LineJoiner {
   void spill();
   void store(Stretch& stretch);
   [[nodiscard]] std::vector<Point<2>> points_of(Line&& line);
+  [[nodiscard]] std::vector<Point<2>> shaped(std::span<const Point<2>> points) const;
 
   Sink sink_;
   std::uint64_t most_points_;
   ScratchFolder& scratch_;
+  const LineTolerance tolerance_;
   std::unique_ptr<ScratchFile> file_;
   std::vector<Line> open_;
   std::vector<Number> free_;

@@ -122,6 +122,11 @@ class Lines(InFolder):
             "--interval 10": {"interval": 10},
             "--interval 10 --base 3": {"interval": 10, "base": 3},
             "--interval 10 --index 2": {"interval": 10, "index": 2},
+            "--interval 10 --smooth 3 --simplify 0.5": {
+                "interval": 10,
+                "smooth": 3,
+                "simplify": 0.5,
+            },
             "--interval 10 --min-length 90.5": {"interval": 10, "min_length": 90.5},
             "--levels 380,390.5": {"levels": [380, 390.5]},
         }

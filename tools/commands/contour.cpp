@@ -36,6 +36,8 @@ struct ContourCommandOptions : TerrainOptions {
   std::vector<double> levels;
   std::uint64_t index = ContourOptions().index;
   std::optional<double> min_length;
+  std::optional<double> smooth;
+  std::optional<double> simplify;
 };
 
 ContourOptions contour_options(const ContourCommandOptions& options) {
@@ -44,6 +46,8 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   contours.max_edge = max_edge(options);
   contours.foreign_crs = options.input.force_crs;
   contours.min_length = options.min_length;
+  contours.smooth = options.smooth;
+  contours.simplify = options.simplify;
   if (!options.levels.empty()) {
     refuse_given(*options.app, {"--interval", "--base", "--index"},
                  "with --levels, which names all heights");
@@ -127,6 +131,12 @@ Subcommand add_contour(CommandLine& root) {
   take_positive_number(
       app.add_option("--min-length", options->min_length, "Leave out lines that are shorter"))
       .value_name("L");
+  take_positive_number(
+      app.add_option("--smooth", options->smooth, "Smooth lines, moving them by at most this"))
+      .value_name("T");
+  take_positive_number(app.add_option("--simplify", options->simplify,
+                                      "Leave out points, moving lines by at most this"))
+      .value_name("T");
   add_terrain_options(app, *options);
   options->uses_crs = true;
   add_report_options(app, options->report);

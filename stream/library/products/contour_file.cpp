@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "formats/disk/output_check.h"
@@ -32,6 +34,11 @@ Levels levels_of(const ContourOptions& options) {
   return Levels::of_list(options.levels);
 }
 
+void check_positive(const char* name, const std::optional<double>& length) {
+  if (!length || (*length > 0 && std::isfinite(*length))) return;
+  throw InvalidArgument(fmt::format("{} is {}, but must be above 0", name, *length));
+}
+
 }  // namespace
 
 ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
@@ -47,10 +54,9 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
   if (options_.index == 0) {
     throw InvalidArgument("index is 0, but every so many-th line is an index contour: 1 at least");
   }
-  if (options_.min_length && !(*options_.min_length > 0)) {
-    throw InvalidArgument(
-        fmt::format("min_length is {}, but must be above 0", *options_.min_length));
-  }
+  check_positive("min_length", options_.min_length);
+  check_positive("smooth", options_.smooth);
+  check_positive("simplify", options_.simplify);
   if (!writes_file_) return;
   check_can_create(disk(), path_);
   tell_lost_layers(format_, path_, context);
@@ -69,6 +75,8 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                .lattice = start.header.lattice,
                .max_edge = start.is_triangulated ? std::nullopt : options_.max_edge,
                .min_length = options_.min_length,
+               .tolerance = {.smooth = options_.smooth.value_or(0),
+                             .simplify = options_.simplify.value_or(0)},
                .memory = own_memory(context().memory())};
   return *begin_again();
 }

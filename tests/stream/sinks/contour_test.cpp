@@ -10,76 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "formats/disk/scratch_folder.h"
 #include "src/error.h"
 #include "src/terrain/isolines.h"
-#include "stream/sinks/contour_writer.h"
+#include "tests/stream/sinks/contour_grid.h"
 
 namespace spillway::test {
 namespace {
-
-using Line = std::vector<Point<2>>;
-
-struct Contours {
-  std::multimap<double, Line> lines;  ///< by height
-  std::uint64_t spilled = 0;
-  std::uint64_t shorter = 0;  ///< lines that were left out for their length
-};
-
-/// Triangles of a square grid over [0, n] x [0, n], heights given by a function; as blocks of so
-/// many triangles, in an order given by a seed.
-template <typename Height>
-Contours contours_of_grid(int n, const Height& height, double interval, std::size_t block_size,
-                          unsigned seed, std::uint64_t memory = 1 << 20,
-                          std::optional<double> min_length = {}) {
-  const auto scratch = make_scratch_folder(::testing::TempDir(), std::nullopt);
-  Contours result;
-  const Levels levels = Levels::every(interval, 0);
-  ContourWriter writer(
-      {.levels = levels, .lattice = {}, .min_length = min_length, .memory = memory},
-      [&](std::span<const Point<2>> points, std::int64_t level) {
-        result.lines.emplace(levels.height(level), Line(points.begin(), points.end()));
-      },
-      *scratch);
-  const auto vertex = [&](int x, int y) { return static_cast<std::uint32_t>(y * (n + 1) + x); };
-  MeshStreamBlock vertices;
-  for (int y = 0; y <= n; ++y) {
-    for (int x = 0; x <= n; ++x) vertices.vertices.push_back({1.0 * x, 1.0 * y, height(x, y)});
-  }
-  const std::size_t count = vertices.vertices.size();
-  writer.write(std::move(vertices));
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (int y = 0; y < n; ++y) {
-    for (int x = 0; x < n; ++x) {
-      triangles.push_back({vertex(x, y), vertex(x + 1, y), vertex(x + 1, y + 1)});
-      triangles.push_back({vertex(x, y), vertex(x + 1, y + 1), vertex(x, y + 1)});
-    }
-  }
-  std::shuffle(triangles.begin(), triangles.end(), std::mt19937(seed));
-  std::vector<std::size_t> uses(count);
-  for (const auto& triangle : triangles) {
-    for (const std::uint32_t v : triangle) ++uses[v];
-  }
-  for (std::size_t begin = 0; begin < triangles.size(); begin += block_size) {
-    MeshStreamBlock block;
-    std::map<std::uint32_t, std::uint32_t> short_number;
-    for (std::size_t t = begin; t < std::min(triangles.size(), begin + block_size); ++t) {
-      for (const std::uint32_t v : triangles[t]) {
-        const auto added =
-            short_number.emplace(v, static_cast<std::uint32_t>(block.imported.size()));
-        if (added.second) block.imported.push_back(v);
-        block.corners.push_back(added.first->second);
-        if (--uses[v] == 0) block.finalized.push_back(added.first->second);
-      }
-    }
-    writer.write(std::move(block));
-  }
-  writer.finish({});
-  result.spilled = writer.spilled_bytes();
-  result.shorter = writer.short_lines();
-  EXPECT_EQ(writer.lines(), result.lines.size());
-  return result;
-}
 
 std::vector<std::pair<double, Line>> sorted(const Contours& contours) {
   std::vector<std::pair<double, Line>> lines(contours.lines.begin(), contours.lines.end());
@@ -119,6 +55,30 @@ TEST(Contours, DoNotDependOnTheOrderOfTrianglesOrBlocks) {
   }
 }
 
+TEST(Contours, OfAnotherShapeDoNotDependOnTheOrderOfTrianglesBlocksOrMemory) {
+  const auto rough = [](double x, double y) {
+    return 7 * std::sin(x / 5) * std::cos(y / 7) + std::sin(97 * x + 31 * y);
+  };
+  for (const LineTolerance& tolerance :
+       {LineTolerance{.smooth = 0.5}, LineTolerance{.simplify = 0.4},
+        LineTolerance{.smooth = 0.5, .simplify = 0.1}}) {
+    const auto with_memory = [&](std::uint64_t memory) {
+      return ContourSinkOptions{.tolerance = tolerance, .memory = memory};
+    };
+    const auto expected = sorted(contours_of_grid(50, rough, 0.5, 100000, 1, with_memory(1 << 20)));
+    EXPECT_GT(expected.size(), 50U);
+    for (const auto& [height, line] : expected) {
+      if (line.front() != line.back()) continue;
+      EXPECT_EQ(line.front(), *std::min_element(line.begin(), line.end()));
+    }
+    for (const std::size_t block_size : {1U, 7U, 400U}) {
+      const Contours contours = contours_of_grid(50, rough, 0.5, block_size, 2, with_memory(4096));
+      EXPECT_GT(contours.spilled, 0U);
+      EXPECT_EQ(sorted(contours), expected) << block_size;
+    }
+  }
+}
+
 TEST(Contours, OfATiltedPlaneRunFromHullToHullAtTheRightPlace) {
   const Contours contours = contours_of_grid(
       10, [](double x, double) { return x + 0.25; }, 1, 9, 3);
@@ -145,8 +105,8 @@ TEST(Contours, ExactlyAtVerticesHaveNoGapsAndNoRepeatedPoints) {
 }
 
 TEST(Contours, GoThroughTheDiskWhenTheyOutgrowTheirMemory) {
-  const auto in_memory = contours_of_grid(40, cone, 0.1, 100000, 5, 1 << 24);
-  const auto spilled = contours_of_grid(40, cone, 0.1, 64, 5, 16 * 1024);
+  const auto in_memory = contours_of_grid(40, cone, 0.1, 100000, 5, {.memory = 1 << 24});
+  const auto spilled = contours_of_grid(40, cone, 0.1, 64, 5, {.memory = 16 * 1024});
   EXPECT_GT(spilled.spilled, 0U);
   EXPECT_EQ(in_memory.spilled, 0U);
   EXPECT_EQ(spilled.lines.size(), in_memory.lines.size());
@@ -164,7 +124,8 @@ double length(const Line& line) {
 TEST(Contours, ShorterThanTheLeastLengthAreLeftOutAndCounted) {
   const auto wavy = [](double x, double y) { return 7 * std::sin(x / 5) * std::cos(y / 7); };
   const Contours all = contours_of_grid(50, wavy, 0.5, 100, 1);
-  const auto of_length = sorted(contours_of_grid(50, wavy, 0.5, 100, 1, 1 << 20, 25));
+  const auto of_length =
+      sorted(contours_of_grid(50, wavy, 0.5, 100, 1, {.min_length = 25, .memory = 1 << 20}));
   std::vector<std::pair<double, Line>> expected;
   for (const auto& line : sorted(all)) {
     if (length(line.second) >= 25) expected.push_back(line);
@@ -173,7 +134,7 @@ TEST(Contours, ShorterThanTheLeastLengthAreLeftOutAndCounted) {
   EXPECT_LT(expected.size(), all.lines.size());
   EXPECT_TRUE(std::ranges::any_of(
       expected, [](const auto& line) { return line.second.front() == line.second.back(); }));
-  EXPECT_EQ(contours_of_grid(50, wavy, 0.5, 7, 3, 1 << 20, 25).shorter,
+  EXPECT_EQ(contours_of_grid(50, wavy, 0.5, 7, 3, {.min_length = 25, .memory = 1 << 20}).shorter,
             all.lines.size() - expected.size());
 }
 
@@ -211,7 +172,8 @@ TEST(Contours, ThatMeetThemselvesAreTheSameInEveryOrder) {
     }
     for (const std::size_t block_size : {1U, 7U, 100U}) {
       const std::uint64_t memory = block_size == 7 ? 512 : 1 << 20;
-      ASSERT_EQ(sorted(contours_of_grid(15, height, 1, block_size, seed + 1, memory)), expected)
+      ASSERT_EQ(sorted(contours_of_grid(15, height, 1, block_size, seed + 1, {.memory = memory})),
+                expected)
           << seed << ", " << block_size;
     }
   }

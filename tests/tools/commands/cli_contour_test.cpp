@@ -152,6 +152,33 @@ TEST_F(Contour, ShorterThanTheLeastLengthAreLeftOutAndTold) {
                 " lines left out: shorter than --min-length 1000000\n");
 }
 
+TEST_F(Contour, OfAnotherShapeDependOnNoTilesThreadsAndMeshes) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.succeed("spillway generate -q terrain -n 4000 -o in.las");
+  const auto lines = [&](const std::string& options) {
+    space.succeed("spillway contour -q -o c.geojson --force-crs --interval 4 " + options);
+    std::multiset<std::string> set;
+    for (const nlohmann::json& line : features(space, "c.geojson")) set.insert(line.dump());
+    return set;
+  };
+  const std::string shape = " --smooth 2 --simplify 0.5 --min-length 30";
+  const auto exact = lines("in.las --min-length 30");
+  const auto expected = lines("in.las --threads 1" + shape);
+  EXPECT_GT(expected.size(), 10U);
+  const auto bytes = [](const std::multiset<std::string>& set) {
+    std::size_t sum = 0;
+    for (const std::string& line : set) sum += line.size();
+    return sum;
+  };
+  EXPECT_LT(bytes(expected), bytes(exact));
+  for (const std::string options : {"--threads 2", "--tile-points 300 --leaf-points 25",
+                                    "--division cycling --tile-points 500 --threads 3"}) {
+    EXPECT_EQ(lines("in.las " + options + shape), expected) << options;
+    space.succeed("spillway triangulate -q in.las -o in.spm " + options);
+    EXPECT_EQ(lines("in.spm" + shape), expected) << options;
+  }
+}
+
 TEST_F(Contour, WritesGeoPackagesShapefilesAndDrawings) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   for (const std::string name : {"c.gpkg", "c.shp", "c.dxf"}) {
@@ -213,6 +240,9 @@ TEST_F(Contour, SaysWhatIsWrongWithTheCommandLine) {
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --levels 3"), HasSubstr("no effect with --levels"));
   EXPECT_THAT(error_of("-o c.dwg --interval 1"), HasSubstr(".gpkg, .shp, .geojson, .json or .dxf"));
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --index 0"), HasSubstr("--index"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval 1 --smooth 0"),
+              HasSubstr("--smooth: \"0\" is not a number above 0"));
+  EXPECT_THAT(error_of("-o c.gpkg --interval 1 --simplify nan"), HasSubstr("--simplify: \"nan\""));
   EXPECT_THAT(error_of("-o c.gpkg --interval 1 --min-length 0"),
               HasSubstr("--min-length: \"0\" is not a number above 0"));
   EXPECT_EQ(space.names(), std::vector<std::string>{"cone.txt"});

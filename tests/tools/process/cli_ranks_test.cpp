@@ -16,6 +16,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/test_paths.h"
@@ -262,10 +263,13 @@ TEST_F(RanksOfTheCommand, DrawTheSameContours) {
     std::ranges::sort(sorted);
     return sorted;
   };
-  const std::string options = "contour -q in.las --interval 3 --force-crs --stats ";
-  work_.succeed("spillway " + options + "a.json -o a.geojson");
-  ASSERT_GT(lines("a.geojson").size(), 1000U);
-  for (const int count : {1, 2, 5}) {
+  const std::string exact = "contour -q in.las --interval 3 --force-crs --stats ";
+  const std::string shape = "--smooth 1 --simplify 0.3 --min-length 20 ";
+  for (const auto& [options, count] :
+       {std::pair(exact, 1), std::pair(exact, 2), std::pair(exact, 5),
+        std::pair("contour " + shape + exact.substr(8), 3)}) {
+    work_.succeed("spillway " + options + "a.json -o a.geojson");
+    ASSERT_GT(lines("a.geojson").size(), 300U);
     work_.succeed(ranks(count, options + "b.json -o b.geojson"));
     EXPECT_EQ(lines("a.geojson"), lines("b.geojson")) << count << " ranks";
     const auto statistics = [this](const char* name) {
@@ -273,6 +277,7 @@ TEST_F(RanksOfTheCommand, DrawTheSameContours) {
     };
     EXPECT_EQ(statistics("a.json").at("lines"), statistics("b.json").at("lines"));
     EXPECT_EQ(statistics("a.json").at("points"), statistics("b.json").at("points"));
+    EXPECT_EQ(statistics("a.json").at("short_lines"), statistics("b.json").at("short_lines"));
   }
 }
 
