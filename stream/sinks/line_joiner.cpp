@@ -310,6 +310,8 @@ std::vector<Point<2>> LineJoiner::shaped(std::span<const Point<2>> points) const
   for (std::size_t i = 0; i < points.size(); i += kPortalPoints) {
     portals.push_back({points[i], points[i + 1], points[i + 2]});
   }
+  // Parts of other joiners have a crossing in common.
+  portals.erase(std::unique(portals.begin(), portals.end()), portals.end());
   const Point<2>& first = portals.front().at;
   if (std::ranges::all_of(portals, [&](const Portal& portal) { return portal.at == first; })) {
     return {};

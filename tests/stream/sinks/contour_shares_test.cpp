@@ -44,9 +44,9 @@ std::vector<std::array<std::uint64_t, 3>> triangles() {
 /// A process of those that draw together.
 class Process {
  public:
-  explicit Process(std::uint64_t memory = 1 << 20)
+  explicit Process(std::uint64_t memory = 1 << 20, const LineTolerance& tolerance = {})
       : writer_(
-            {.levels = Levels::every(0.5, 0), .lattice = {}, .memory = memory},
+            {.levels = Levels::every(0.5, 0), .tolerance = tolerance, .memory = memory},
             [this](std::span<const Point<2>> points, std::int64_t level) {
               store_.add(points, level);
               add(points, level);
@@ -115,20 +115,20 @@ class Queues final : public OtherShares {
   std::vector<Queue>& queues_;
 };
 
-std::vector<Line> lines_of_one() {
-  Process one;
+std::vector<Line> lines_of_one(const LineTolerance& tolerance = {}) {
+  Process one(1 << 20, tolerance);
   for (const auto& triangle : triangles()) one.take(triangle);
   return one.finish();
 }
 
-TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheLinesOfOneProcess) {
-  const std::vector<Line> expected = lines_of_one();
+void expect_lines_of_one(const LineTolerance& tolerance) {
+  const std::vector<Line> expected = lines_of_one(tolerance);
   ASSERT_GT(expected.size(), 100U);
   for (const std::size_t message_bytes :
        {std::size_t{1}, std::size_t{1000}, std::size_t{1} << 20}) {
     for (const std::size_t count : {2, 5}) {
       std::deque<Process> processes;
-      for (std::size_t p = 0; p < count; ++p) processes.emplace_back(message_bytes);
+      for (std::size_t p = 0; p < count; ++p) processes.emplace_back(message_bytes, tolerance);
       std::mt19937 random(7);
       for (const auto& triangle : triangles()) processes[random() % count].take(triangle);
       std::vector<Queue> queues(count - 1, Queue(message_bytes));
@@ -147,6 +147,13 @@ TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheLinesOfOneProcess) {
       EXPECT_EQ(figures_taken, count - 1);
     }
   }
+}
+
+TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheLinesOfOneProcess) { expect_lines_of_one({}); }
+
+TEST(ContourShares, OfTrianglesDealtAtRandomMakeTheSameLinesOfAnotherShape) {
+  expect_lines_of_one({.smooth = 0.5});
+  expect_lines_of_one({.smooth = 0.5, .simplify = 0.25});
 }
 
 /// Two strips of the grid, each numbered from 0 on in a block of its own, and what lies between
