@@ -184,7 +184,8 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("index", &ContourOptions::index)
       .def_readwrite("min_length", &ContourOptions::min_length)
       .def_readwrite("smooth", &ContourOptions::smooth)
-      .def_readwrite("simplify", &ContourOptions::simplify);
+      .def_readwrite("simplify", &ContourOptions::simplify)
+      .def_readwrite("bands", &ContourOptions::bands);
   py::class_<PictureOptions>(module, "PictureOptions")
       .def(py::init())
       .def_readwrite("size", &PictureOptions::size)

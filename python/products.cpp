@@ -69,6 +69,7 @@ py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,
   const ContourReport& lines = sink->report();
   statistics["lines"] = lines.lines;
   statistics["short_lines"] = lines.short_lines;
+  statistics["polygons"] = lines.polygons;
   statistics["line_points"] = lines.points;
   statistics["lowest"] = lines.lowest;
   statistics["highest"] = lines.highest;

@@ -7,8 +7,12 @@
 #include <string>
 
 #include "src/geometry/framed_point.h"
+#include "src/geometry/point.h"
 
 namespace spillway::formats {
+
+/// What features of a layer are.
+enum class VectorContent : std::uint8_t { kTriangles, kLines, kBands };
 
 /// What a vector file of one layer holds.
 struct VectorLayerOptions {
@@ -16,8 +20,8 @@ struct VectorLayerOptions {
   std::string name;    ///< of the file in messages
   std::string driver;  ///< GDAL's name: "GPKG", "ESRI Shapefile", "GeoJSON", "DXF"
   std::string layer;   ///< the layer's name; a shapefile takes it from its path instead
-  bool lines = false;  ///< contours; else triangles
-  std::string crs;     ///< as Gdal takes it; empty: unknown
+  VectorContent content = VectorContent::kTriangles;
+  std::string crs;  ///< as Gdal takes it; empty: unknown
   /// Where the driver brings coordinates to longitude and latitude (GeoJSON), and it is not known
   /// from what: write them as they are, instead of an error.
   bool as_they_are = false;
@@ -30,6 +34,15 @@ struct ContourLine {
   std::span<const WorldPoint> points;  ///< closed if its ends are equal
   double elevation = 0;
   bool is_index = false;
+};
+
+/// What lies between two heights, or a part of it.
+struct ContourBand {
+  /// The first one counter-clockwise around the others, which are holes and run clockwise. Closed:
+  /// the last point of a ring is joined to the first one.
+  std::span<const std::span<const Point<2>>> rings;
+  double least = 0;
+  double greatest = 0;
 };
 
 /// A layer being written. The file is not complete before finish(), and is left as it is if the
@@ -46,6 +59,8 @@ class VectorLayer {
   /// Adds a line with z and the attributes "elevation" and "index" (1 or 0). DXF has no
   /// attributes: it has a layer for index contours, and one for the others.
   virtual void add_line(const ContourLine& line) = 0;
+  /// Adds a polygon without z and the attributes "min" and "max".
+  virtual void add_band(const ContourBand& band) = 0;
   /// Completes and closes the file.
   virtual void finish() = 0;
 };

@@ -20,7 +20,8 @@ struct VectorFormat {
   std::span<const std::string_view> part_extensions{};
   bool takes_backslash = true;  ///< in its path
   bool is_lonlat = false;       ///< holds longitude and latitude in WGS 84, and nothing else
-  bool holds_layers = false;    ///< perhaps several, made by other programs
+  bool holds_polygons = true;
+  bool holds_layers = false;  ///< perhaps several, made by other programs
 };
 
 namespace vector_names {
@@ -49,8 +50,11 @@ inline constexpr VectorFormat kGeoJson = {.name = "geojson",
                                           .extensions = vector_names::kJson,
                                           .is_lonlat = true};
 
-inline constexpr VectorFormat kDxf = {
-    .name = "dxf", .title = "DXF", .driver = "DXF", .extensions = vector_names::kDxf};
+inline constexpr VectorFormat kDxf = {.name = "dxf",
+                                      .title = "DXF",
+                                      .driver = "DXF",
+                                      .extensions = vector_names::kDxf,
+                                      .holds_polygons = false};
 
 /// All of them.
 std::span<const VectorFormat* const> vector_formats();

@@ -31,13 +31,17 @@ struct ContourOptions {
   /// Lines of few points, no farther than this from those with all. Neither makes lines of different
   /// heights meet. Both in units of x and y.
   std::optional<double> simplify{};
+  /// Instead of lines, polygons of what lies between neighbouring levels: not in DXF, and not with
+  /// min_length. The edges of one band have to fit in memory, at some 200 bytes each.
+  bool bands = false;
 };
 
 /// What became of the lines.
 struct ContourReport {
-  std::uint64_t lines = 0;
+  std::uint64_t lines = 0;        ///< those between bands, too
+  std::uint64_t polygons = 0;     ///< of bands
   std::uint64_t short_lines = 0;  ///< left out, being shorter than min_length
-  std::uint64_t points = 0;       ///< of lines
+  std::uint64_t points = 0;       ///< of lines, or of polygons
   /// Least and greatest height of the terrain; in reverse order if there is none.
   double lowest = 0;
   double highest = 0;
@@ -53,7 +57,7 @@ class SPILLWAY_API ContourSink : public MeshSink {
 
 /// Contours as a vector file (gpkg, shp, geojson, dxf: by the extension), lines with higher ground
 /// to their left, and attributes: "elevation" and "index", 1 for index contours (in DXF: layers).
-/// It gets its name when it is complete. A quarter of the context's memory is for
+/// Bands are polygons with the attributes "min" and "max", from the lowest one up. The file gets its name when it is complete. A quarter of the context's memory is for
 /// lines that are not complete. Throws Error: kInvalidArgument for options that cannot be,
 /// kInputOutput.
 SPILLWAY_API std::unique_ptr<ContourSink> create_contours(const std::string& path,

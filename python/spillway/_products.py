@@ -255,6 +255,7 @@ def contour(
     min_length: float | None = None,
     smooth: float | None = None,
     simplify: float | None = None,
+    bands: bool = False,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> ContourReport:
@@ -283,6 +284,9 @@ def contour(
         Smooth lines, moving them by at most this. Lines of different heights do not meet.
     simplify : float, optional
         Leave out points of lines, moving these by at most this, likewise.
+    bands : bool, optional
+        Polygons of what lies between neighbouring levels, instead of lines. Not with `index` and
+        `min_length`.
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -308,6 +312,10 @@ def contour(
     put_all(how, {"interval": interval, "base": base, "levels": levels})
     put_all(how, {"index": index, "min_length": min_length})
     put_all(how, {"smooth": smooth, "simplify": simplify})
+    if bands:
+        of_lines = {"index": index, "min_length": min_length}
+        refuse(of_lines, of_lines, "with bands, which are no lines")
+    how.bands = bands
     put_all(how, {"max_edge": options.get("max_edge")})
     how.foreign_crs = bool(options.get("force_crs"))
     run = make_run(options)
@@ -315,7 +323,7 @@ def contour(
     report = ContourReport(**_spillway.contours(run, origin, as_path(output, "output"), how))
     if report.lines == 0 and report.short_lines > 0:
         tell(True, f"no lines: {report.short_lines} lines left out: shorter than min_length")
-    elif report.lines == 0:
+    elif report.lines == 0 and not bands:
         tell(
             True,
             f"no lines: no level lies above the lowest height, {report.lowest:g}, and up to the "

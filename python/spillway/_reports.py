@@ -136,18 +136,20 @@ class HeightReport(RunReport):
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
-    """How many lines there are, of how many points, how many were left out for their length, the
-    least and the greatest height of the terrain, and the run that made them."""
+    """How many lines there are, or polygons, of how many points, how many lines were left out for
+    their length, the least and the greatest height of the terrain, and the run that made them."""
 
     lines: int
     short_lines: int
+    polygons: int
     line_points: int
     lowest: float
     highest: float
     spilled_line_bytes: int
 
     def _summary(self) -> str:
-        return f"{self.lines} lines of {self.line_points} points; {_counts(self)}"
+        what = f"{self.polygons} polygons" if self.polygons else f"{self.lines} lines"
+        return f"{what} of {self.line_points} points; {_counts(self)}"
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

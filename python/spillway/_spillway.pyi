@@ -148,6 +148,7 @@ class ContourOptions:
     min_length: float | None
     smooth: float | None
     simplify: float | None
+    bands: bool
 
 class PictureOptions:
     size: int

@@ -21,16 +21,6 @@ constexpr double kTowardsEnd = 0.9;
 /// Numbers of levels stay exact in double.
 constexpr double kLargestNumber = 0x1p52;
 
-/// Where the level crosses the edge from one corner to another. The order in which they are given
-/// does not matter. Zeros have no sign, so that equal places have equal bits.
-Point<2> crossing_point(const Point<3>& one, const Point<3>& other, double height) {
-  const auto& [a, b] = std::minmax(one, other);
-  if (a[2] == height) return {a[0] + 0.0, a[1] + 0.0};
-  if (b[2] == height) return {b[0] + 0.0, b[1] + 0.0};
-  const double share = (height - a[2]) / (b[2] - a[2]);
-  return {a[0] + share * (b[0] - a[0]) + 0.0, a[1] + share * (b[1] - a[1]) + 0.0};
-}
-
 /// The end of a portal on the side of an edge's end: `rise` is the height from the crossing to
 /// there, `most` how much of it the portal may have.
 Point<2> portal_end(const Point<2>& at, const Point<3>& end, double rise, double most,
@@ -92,12 +82,15 @@ double Levels::height(std::int64_t number) const {
                         : base_ + static_cast<double>(number) * interval_;
 }
 
+bool Levels::has(std::int64_t number) const {
+  return interval_ != 0 || (number >= 0 && number < static_cast<std::int64_t>(list_.size()));
+}
+
 double Levels::distance_to_next(std::int64_t number) const {
   double distance = std::numeric_limits<double>::infinity();
   const double here = height(number);
-  const auto end = static_cast<std::int64_t>(list_.size());
-  if (interval_ != 0 || number > 0) distance = here - height(number - 1);
-  if (interval_ != 0 || number + 1 < end) distance = std::min(distance, height(number + 1) - here);
+  if (has(number - 1)) distance = here - height(number - 1);
+  if (has(number + 1)) distance = std::min(distance, height(number + 1) - here);
   return distance;
 }
 
@@ -137,6 +130,15 @@ std::int64_t Levels::first_above(double low) const {
 Levels::Range Levels::between(double low, double high) const {
   const Range range{first_above(low), first_above(high)};
   return {range.first, std::max(range.first, range.end)};
+}
+
+// Zeros have no sign, so that equal places have equal bits.
+Point<2> crossing_point(const Point<3>& one, const Point<3>& other, double height) {
+  const auto& [a, b] = std::minmax(one, other);
+  if (a[2] == height) return {a[0] + 0.0, a[1] + 0.0};
+  if (b[2] == height) return {b[0] + 0.0, b[1] + 0.0};
+  const double share = (height - a[2]) / (b[2] - a[2]);
+  return {a[0] + share * (b[0] - a[0]) + 0.0, a[1] + share * (b[1] - a[1]) + 0.0};
 }
 
 void append_segments(const std::array<Corner, 3>& corners, const Levels& levels, double slide,

@@ -21,6 +21,8 @@ class Levels {
   static Levels of_list(std::vector<double> heights);
 
   [[nodiscard]] double height(std::int64_t number) const;
+  /// Whether there is a level of that number: of a list not every one is.
+  [[nodiscard]] bool has(std::int64_t number) const;
   /// The lesser one of the distances to the levels above and below; infinite if there are none.
   [[nodiscard]] double distance_to_next(std::int64_t number) const;
   /// Whether a level is one of every so many, counted from the base; of a list none is.
@@ -48,6 +50,10 @@ struct Crossing {
   std::int64_t level = 0;
   bool operator==(const Crossing&) const = default;
 };
+
+/// Where a level crosses the edge between two points, the same in either order. One of them is on
+/// the level or above it, the other one below.
+Point<2> crossing_point(const Point<3>& one, const Point<3>& other, double height);
 
 /// A corner of a triangle, by its number in the mesh and in output coordinates.
 struct Corner {

@@ -51,8 +51,12 @@ double place_of(const Portal& portal) {
   return std::clamp((portal.at[axis] - portal.right[axis]) / whole[axis], 0.0, 1.0);
 }
 
+/// Next to an end, where lines of the same level may be, it is the end: a rounded point might be
+/// on the other side of them.
 Point<2> at_place(const Portal& portal, double place) {
-  return place >= 1 ? portal.left : between(portal.right, portal.left, place);
+  constexpr double kNear = 1e-6;
+  if (place < kNear) return portal.right;
+  return place > 1 - kNear ? portal.left : between(portal.right, portal.left, place);
 }
 
 /// Moves where portals are passed, by no more than `distance` each.

@@ -10,7 +10,7 @@ namespace spillway::stream {
 namespace {
 
 /// What a message holds: its first byte.
-enum class Content : std::uint8_t { kStatistics, kWholeLines, kOpenLines };
+enum class Content : std::uint8_t { kStatistics, kWholeLines, kOpenLines, kHullEdges };
 
 Packer message_of(Content content) {
   Packer message;
@@ -30,6 +30,22 @@ void give_open_lines(LineJoiner& joiner, ShareSender& sender) {
     message = message_of(Content::kOpenLines);
   });
   if (message.bytes().size() > none) sender.send(message.bytes());
+}
+
+void give_hull(HullEdges& hull, ShareSender& sender) {
+  Packer message = message_of(Content::kHullEdges);
+  const std::size_t none = message.bytes().size();
+  hull.finish([&](const HullEdge& edge) {
+    message.put(edge);
+    if (message.bytes().size() < sender.message_bytes()) return;
+    sender.send(message.bytes());
+    message = message_of(Content::kHullEdges);
+  });
+  if (message.bytes().size() > none) sender.send(message.bytes());
+}
+
+void take_hull(std::span<const std::byte> bytes, HullEdges& hull) {
+  for (Unpacker edges(bytes); !edges.empty();) hull.add(edges.take<HullEdge>());
 }
 
 void take_open_lines(std::span<const std::byte> bytes, LineJoiner& joiner) {
@@ -59,6 +75,7 @@ void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender)
     sender.send(message);
   }
   give_open_lines(writer.joiner(), sender);
+  give_hull(writer.hull(), sender);
 }
 
 void take_contours(ContourWriter& writer, OtherShares& others, const ContourWriter::Sink& take_line,
@@ -75,6 +92,9 @@ void take_contours(ContourWriter& writer, OtherShares& others, const ContourWrit
           break;
         case Content::kOpenLines:
           take_open_lines(bytes, writer.joiner());
+          break;
+        case Content::kHullEdges:
+          take_hull(bytes, writer.hull());
           break;
       }
     }

@@ -21,11 +21,12 @@ struct ContourStatistics {
   std::uint64_t spilled_bytes = 0;
 };
 
-/// Gives away the whole lines, which wait in `lines`, and the open ones of the writer.
+/// Gives away the whole lines, which wait in `lines`, and of the writer the open ones and the edges
+/// that have one triangle so far.
 void give_contours(ContourWriter& writer, LineStore& lines, ShareSender& sender);
 
-/// Takes all that others give: their whole lines go to `take_line`, the open ones to the writer,
-/// the statistics, one of each, to `take_statistics`.
+/// Takes all that others give: their whole lines go to `take_line`, open ones and edges to the
+/// writer, the statistics, one of each, to `take_statistics`.
 void take_contours(ContourWriter& writer, OtherShares& others, const ContourWriter::Sink& take_line,
                    const std::function<void(const ContourStatistics&)>& take_statistics);
 

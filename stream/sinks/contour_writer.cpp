@@ -9,7 +9,8 @@
 
 namespace spillway::stream {
 
-ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch)
+ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch,
+                             HullEdges::Sink hull_sink)
     : options_(std::move(options)),
       joiner_(
           [this, sink = std::move(sink)](std::span<const Point<2>> points, std::int64_t level) {
@@ -19,7 +20,8 @@ ContourWriter::ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolde
               sink(points, level);
             }
           },
-          options_.memory, scratch, options_.tolerance) {}
+          options_.memory, scratch, options_.tolerance),
+      hull_sink_(std::move(hull_sink)) {}
 
 std::vector<WorldPoint> ContourWriter::in_output(std::span<const LatticePoint> vertices) const {
   std::vector<WorldPoint> points;
@@ -60,6 +62,7 @@ void ContourWriter::draw(const StreamNumbers& numbers, std::span<const WorldPoin
       ++left_out_;
       continue;
     }
+    if (options_.finds_hull) hull_.add(triangle);
     segments_.clear();
     append_segments(triangle, options_.levels, options_.tolerance.sum(), segments_);
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
@@ -73,9 +76,16 @@ void ContourWriter::write(MeshStreamBlock&& block) {
   draw({live_.announced(), block}, vertices, block.corners);
   live_.settle(block, vertices);
   // An edge gets no further triangle once one of its ends gets none.
-  joiner_.release([this](const Crossing& crossing) {
-    return !live_.contains(crossing.edge[0]) || !live_.contains(crossing.edge[1]);
-  });
+  const auto is_final = [this](const std::array<std::uint64_t, 2>& edge) {
+    return !live_.contains(edge[0]) || !live_.contains(edge[1]);
+  };
+  joiner_.release([&](const Crossing& crossing) { return is_final(crossing.edge); });
+  if (hull_sink_) hull_.release(is_final, hull_sink_);
+}
+
+void ContourWriter::number_from(std::uint64_t first_vertex) {
+  joiner_.number_from(first_vertex);
+  hull_.number_from(first_vertex);
 }
 
 void ContourWriter::take_merged(const MergedBlock& block) {
@@ -86,6 +96,9 @@ void ContourWriter::take_merged(const MergedBlock& block) {
   draw({block.first_vertex, block.mesh}, vertices, block.mesh.corners);
 }
 
-void ContourWriter::finish(const MeshTotals& /*totals*/) { joiner_.finish(); }
+void ContourWriter::finish(const MeshTotals& /*totals*/) {
+  joiner_.finish();
+  if (hull_sink_) hull_.finish(hull_sink_);
+}
 
 }  // namespace spillway::stream

@@ -13,6 +13,7 @@
 #include "src/geometry/lattice.h"
 #include "src/terrain/isolines.h"
 #include "src/terrain/line_shape.h"
+#include "stream/sinks/hull_edges.h"
 #include "stream/sinks/line_joiner.h"
 #include "stream/sinks/mesh_shares.h"
 
@@ -24,6 +25,7 @@ struct ContourSinkOptions {
   std::optional<double> max_edge{};    ///< leave out triangles with a longer edge, in output units
   std::optional<double> min_length{};  ///< leave out lines that are shorter, in output units
   LineTolerance tolerance{};           ///< how far lines may be from where they are exactly
+  bool finds_hull = false;             ///< give the edges of one triangle, too
   std::uint64_t memory = 0;            ///< bytes for points of lines that are still open
 };
 
@@ -34,17 +36,21 @@ class ContourWriter : public BlockSink {
   /// Receives each whole line, in output coordinates, with its level's number.
   using Sink = LineJoiner::Sink;
 
-  ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch);
+  /// `hull_sink` receives edges of one triangle as they are known; without it they wait in hull().
+  ContourWriter(ContourSinkOptions options, Sink sink, ScratchFolder& scratch,
+                HullEdges::Sink hull_sink = {});
 
   void write(MeshStreamBlock&& block) override;
   void finish(const MeshTotals& totals) override;
 
   /// Where several processes draw the lines of one mesh: the number in it of the first vertex that
   /// came; what comes after it is numbered so, too.
-  void number_from(std::uint64_t first_vertex) { joiner_.number_from(first_vertex); }
+  void number_from(std::uint64_t first_vertex);
   void take_merged(const MergedBlock& block);
   /// The lines that are open, to be joined elsewhere, and such ones of others.
   [[nodiscard]] LineJoiner& joiner() { return joiner_; }
+  /// Likewise the edges that have one triangle so far.
+  [[nodiscard]] HullEdges& hull() { return hull_; }
 
   /// Lines that were given to the sink.
   [[nodiscard]] std::uint64_t lines() const { return joiner_.lines() - short_lines_; }
@@ -67,6 +73,8 @@ class ContourWriter : public BlockSink {
 
   const ContourSinkOptions options_;
   LineJoiner joiner_;
+  HullEdges hull_;
+  HullEdges::Sink hull_sink_;
   std::vector<IsoSegment> segments_;
   StreamVertices<WorldPoint> live_;
   double lowest_ = std::numeric_limits<double>::infinity();

@@ -127,6 +127,7 @@ class Lines(InFolder):
                 "smooth": 3,
                 "simplify": 0.5,
             },
+            "--interval 10 --bands": {"interval": 10, "bands": True},
             "--interval 10 --min-length 90.5": {"interval": 10, "min_length": 90.5},
             "--levels 380,390.5": {"levels": [380, 390.5]},
         }
@@ -148,6 +149,8 @@ class Lines(InFolder):
             spillway.contour(points, "a.gpkg", interval=1, levels=[2])
         with self.assertRaisesRegex(ValueError, "index has no effect with levels"):
             spillway.contour(points, "a.gpkg", levels=[2], index=5)
+        with self.assertRaisesRegex(ValueError, "min_length has no effect with bands"):
+            spillway.contour(points, "a.gpkg", interval=2, bands=True, min_length=5)
         with self.assertRaisesRegex(ValueError, "index is 0"):
             spillway.contour(points, "a.gpkg", interval=2, index=0)
         with self.assertWarnsRegex(spillway.Warning, "lines left out: shorter than min_length"):

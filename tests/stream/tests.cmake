@@ -1,7 +1,7 @@
 spillway_test(stream_unit_test unit
   SOURCES stream/output/heights_test.cpp stream/output/unpaired_facets_test.cpp
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
-          stream/sinks/contour_shape_test.cpp stream/sinks/contour_shares_test.cpp
+          stream/sinks/band_store_test.cpp stream/sinks/contour_shape_test.cpp stream/sinks/contour_shares_test.cpp
           stream/sinks/contour_test.cpp
           stream/sinks/line_joiner_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp

@@ -27,6 +27,7 @@ constexpr const char* kExamples =
     "  spillway contour survey.laz -o contours.gpkg --interval 1\n"
     "  spillway contour 'tiles/*.laz' -o contours.shp --interval 5 --keep-class 2 --thin 1\n"
     "  spillway contour tin.spm -o shore.geojson --levels 0,0.5\n"
+    "  spillway contour survey.laz -o bands.gpkg --interval 5 --bands\n"
     "Lines run with higher ground to their left; docs/contour.md tells more.";
 
 struct ContourCommandOptions : TerrainOptions {
@@ -38,6 +39,7 @@ struct ContourCommandOptions : TerrainOptions {
   std::optional<double> min_length;
   std::optional<double> smooth;
   std::optional<double> simplify;
+  bool bands = false;
 };
 
 ContourOptions contour_options(const ContourCommandOptions& options) {
@@ -48,6 +50,10 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   contours.min_length = options.min_length;
   contours.smooth = options.smooth;
   contours.simplify = options.simplify;
+  contours.bands = options.bands;
+  if (options.bands) {
+    refuse_given(*options.app, {"--index", "--min-length"}, "with --bands, which are no lines");
+  }
   if (!options.levels.empty()) {
     refuse_given(*options.app, {"--interval", "--base", "--index"},
                  "with --levels, which names all heights");
@@ -70,15 +76,16 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
                                          contours.lines == 0 ? "warning: no lines: " : "",
                                          contours.short_lines, *options.min_length);
     contours.lines == 0 ? progress.insist(text) : progress.say(text);
-  } else if (contours.lines == 0) {
+  } else if (contours.lines == 0 && !options.bands) {
     progress.insist(
         fmt::format("warning: no lines: no level lies above the lowest height, {}, and up to the "
                     "highest, {}",
                     contours.lowest, contours.highest));
   }
-  progress.say(fmt::format("{} vertices, {} triangles; {} lines of {} points, {:.2f} s",
-                           report.mesh.vertices, report.mesh.simplices, contours.lines,
-                           contours.points, facts.seconds));
+  progress.say(fmt::format("{} vertices, {} triangles; {} {} of {} points, {:.2f} s",
+                           report.mesh.vertices, report.mesh.simplices,
+                           options.bands ? contours.polygons : contours.lines,
+                           options.bands ? "polygons" : "lines", contours.points, facts.seconds));
 }
 
 int run(const ContourCommandOptions& options) {
@@ -95,6 +102,7 @@ int run(const ContourCommandOptions& options) {
   say(options, report, contours->report(), facts, progress);
   const Json lines = {{"lines", contours->report().lines},
                       {"short_lines", contours->report().short_lines},
+                      {"polygons", contours->report().polygons},
                       {"points", contours->report().points},
                       {"spilled_bytes", contours->report().spilled_bytes}};
   write_statistics(options, report, facts, {{"contours", lines}});
@@ -137,6 +145,7 @@ Subcommand add_contour(CommandLine& root) {
   take_positive_number(app.add_option("--simplify", options->simplify,
                                       "Leave out points, moving lines by at most this"))
       .value_name("T");
+  app.add_flag("--bands", options->bands, "Polygons between levels, instead of lines");
   add_terrain_options(app, *options);
   options->uses_crs = true;
   add_report_options(app, options->report);

@@ -31,6 +31,8 @@ constexpr std::uint64_t kFeaturesPerTransaction = 100'000;
 constexpr std::uint64_t kFeaturesPerLook = 64;  ///< at the disk's free space
 constexpr const char* kElevation = "elevation";
 constexpr const char* kIndex = "index";
+constexpr const char* kLeast = "min";
+constexpr const char* kGreatest = "max";
 
 // Layers of DXF, by the field in which its driver takes them.
 constexpr const char* kDxfLayer = "Layer";
@@ -44,7 +46,19 @@ constexpr const char* kIntermediateLayer = "CONTOUR-INTERMEDIATE";
 constexpr std::uint64_t kShapefileLimit = (std::uint64_t{1} << 31) - 1;
 constexpr std::uint64_t kShapefileHeader = 100;
 constexpr std::uint64_t kShapefileRecord = 8 + 4 + 32 + 4 + 4 + 4 + 16;
+constexpr std::uint64_t kShapefilePart = 4;
 constexpr std::uint64_t kShapefilePoint = 24;
+
+OGRwkbGeometryType geometry_of(VectorContent content) {
+  switch (content) {
+    case VectorContent::kLines:
+      return wkbLineString25D;
+    case VectorContent::kBands:
+      return wkbPolygon;
+    default:
+      return wkbPolygon25D;
+  }
+}
 
 /// Whether nothing more fits on the disk where a file lies.
 bool disk_is_full(const std::string& path) {
@@ -71,10 +85,10 @@ bool ends_with(const std::string& path, std::string_view end) {
 /// A coordinate whose unit is not known. One of 1000 and more is none of degrees: 3 decimals are
 /// enough. The driver writes 7.
 double rounded(double coordinate) {
-  constexpr double kLeast = 1e3;
+  constexpr double kNoDegrees = 1e3;
   constexpr double kMost = 1e12;  // what has no such digits stays as it is
   const double size = std::abs(coordinate);
-  return size >= kLeast && size < kMost ? std::round(coordinate * 1000) / 1000 : coordinate;
+  return size >= kNoDegrees && size < kMost ? std::round(coordinate * 1000) / 1000 : coordinate;
 }
 
 class OgrLayer : public VectorLayer {
@@ -121,7 +135,6 @@ class OgrLayer : public VectorLayer {
 
   void add_line(const ContourLine& line) override {
     take_space(line.points.size());
-    if (is_lonlat_) check_lonlat(line.points);
     OGRFeature feature(layer_->GetLayerDefn());
     if (is_dxf_) {
       feature.SetField(kDxfLayer, line.is_index ? kIndexLayer : kIntermediateLayer);
@@ -141,6 +154,28 @@ class OgrLayer : public VectorLayer {
       set_points(open, line.points);
       feature.SetGeometry(&open);
     }
+    add(feature);
+  }
+
+  void add_band(const ContourBand& band) override {
+    std::size_t points = 0;
+    OGRPolygon polygon;
+    for (const std::span<const Point<2>> points_of_ring : band.rings) {
+      points += points_of_ring.size() + 1;
+      OGRLinearRing ring;
+      ring.setNumPoints(static_cast<int>(points_of_ring.size()), FALSE);
+      for (std::size_t i = 0; i < points_of_ring.size(); ++i) {
+        set_point(ring, i, {points_of_ring[i][0], points_of_ring[i][1], 0});
+      }
+      ring.set3D(FALSE);
+      ring.closeRings();
+      polygon.addRing(&ring);
+    }
+    take_space(points, band.rings.size());
+    OGRFeature feature(layer_->GetLayerDefn());
+    feature.SetField(kLeast, band.least);
+    feature.SetField(kGreatest, band.greatest);
+    feature.SetGeometry(&polygon);
     add(feature);
   }
 
@@ -175,12 +210,14 @@ class OgrLayer : public VectorLayer {
       has_crs = true;
     }
     layer_ = file_->CreateLayer(options.layer.c_str(), has_crs ? &crs : nullptr,
-                                options.lines ? wkbLineString25D : wkbPolygon25D,
-                                const_cast<char**>(how.data()));
+                                geometry_of(options.content), const_cast<char**>(how.data()));
     if (layer_ == nullptr) fail(gdal_reason());
-    if (options.lines && !is_dxf_) {
+    if (options.content == VectorContent::kLines && !is_dxf_) {
       create_field(kElevation, OFTReal);
       create_field(kIndex, OFTInteger);
+    } else if (options.content == VectorContent::kBands) {
+      create_field(kLeast, OFTReal);
+      create_field(kGreatest, OFTReal);
     }
     for (const auto& [name, text] : options.metadata) {
       layer_->SetMetadataItem(name.c_str(), text.c_str());
@@ -198,16 +235,19 @@ class OgrLayer : public VectorLayer {
 
   void set_points(OGRLineString& line, std::span<const WorldPoint> points) const {
     line.setNumPoints(static_cast<int>(points.size()), FALSE);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double x = is_rounded_ ? rounded(points[i][0]) : points[i][0];
-      const double y = is_rounded_ ? rounded(points[i][1]) : points[i][1];
-      line.setPoint(static_cast<int>(i), x, y, points[i][2]);
-    }
+    for (std::size_t i = 0; i < points.size(); ++i) set_point(line, i, points[i]);
   }
 
-  /// Counts a feature of `points` points, which must fit the format.
-  void take_space(std::size_t points) {
-    shapefile_bytes_ += kShapefileRecord + kShapefilePoint * points;
+  void set_point(OGRLineString& line, std::size_t i, const WorldPoint& point) const {
+    if (is_lonlat_) check_lonlat(point);
+    const double x = is_rounded_ ? rounded(point[0]) : point[0];
+    const double y = is_rounded_ ? rounded(point[1]) : point[1];
+    line.setPoint(static_cast<int>(i), x, y, point[2]);
+  }
+
+  /// Counts a feature of `points` points in `rings` parts, which must fit the format.
+  void take_space(std::size_t points, std::size_t rings = 1) {
+    shapefile_bytes_ += kShapefileRecord + kShapefilePart * (rings - 1) + kShapefilePoint * points;
     if (is_shapefile_ && shapefile_bytes_ > kShapefileLimit) {
       throw CannotWrite(
           name_,
@@ -235,11 +275,9 @@ class OgrLayer : public VectorLayer {
   }
 
   /// What the driver does not transform, it does not look at either.
-  void check_lonlat(std::span<const WorldPoint> points) const {
-    for (const WorldPoint& point : points) {
-      if (std::abs(point[0]) <= 180 && std::abs(point[1]) <= 90) continue;
-      fail_for_place(fmt::format("{:.15g}, {:.15g}", point[0], point[1]));
-    }
+  void check_lonlat(const WorldPoint& point) const {
+    if (std::abs(point[0]) <= 180 && std::abs(point[1]) <= 90) return;
+    fail_for_place(fmt::format("{:.15g}, {:.15g}", point[0], point[1]));
   }
 
   [[noreturn]] void fail_for_place(const std::string& reason) const {

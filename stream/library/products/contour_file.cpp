@@ -57,6 +57,13 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
   check_positive("min_length", options_.min_length);
   check_positive("smooth", options_.smooth);
   check_positive("simplify", options_.simplify);
+  if (options_.bands && options_.min_length) {
+    throw InvalidArgument("bands have all lines as their boundaries: no min_length");
+  }
+  if (options_.bands && !format_.holds_polygons) {
+    throw InvalidArgument(fmt::format("{}: {} holds lines only; bands go to {}", path_,
+                                      format_.title, "gpkg, shp or geojson"));
+  }
   if (!writes_file_) return;
   check_can_create(disk(), path_);
   tell_lost_layers(format_, path_, context);
@@ -68,7 +75,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
   refuse_tetrahedra(start);
   refuse_without_heights(start);
   layer_.path = path_;
-  layer_.lines = true;
+  layer_.content = options_.bands ? VectorContent::kBands : VectorContent::kLines;
   layer_.crs = start.header.crs;
   layer_.as_they_are = keeps_coordinates(start);
   contours_ = {.levels = levels_,
@@ -77,6 +84,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                .min_length = options_.min_length,
                .tolerance = {.smooth = options_.smooth.value_or(0),
                              .simplify = options_.simplify.value_or(0)},
+               .finds_hull = options_.bands,
                .memory = own_memory(context().memory())};
   return *begin_again();
 }
@@ -84,15 +92,19 @@ BlockSink& ContourFile::open(const MeshStart& start) {
 BlockSink* ContourFile::begin_again() {
   report_ = {};
   writer_.reset();
+  bands_.reset();
   if (writes_file_) {
     file_.emplace(format_, layer_);
+    if (options_.bands) bands_.emplace(levels_, *scratch_);
   } else {
     lines_.emplace(*scratch_);
   }
+  HullEdges::Sink hull_sink;
+  if (bands_) hull_sink = [this](const HullEdge& edge) { bands_->add_hull_edge(edge); };
   return &writer_.emplace(
       contours_,
       [this](std::span<const Point<2>> points, std::int64_t level) { add(points, level); },
-      *scratch_);
+      *scratch_, hull_sink);
 }
 
 /// Whether coordinates are written as they are, though they are to be longitude and latitude.
@@ -121,12 +133,29 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
 
 void ContourFile::add(std::span<const Point<2>> points, std::int64_t level) {
   if (lines_) return lines_->add(points, level);
+  if (bands_) return bands_->add_line(points, level);
   const double height = levels_.height(level);
   line_.clear();
   for (const Point<2>& point : points) line_.push_back({point[0], point[1], height});
   file_->layer().add_line(
       {.points = line_, .elevation = height, .is_index = levels_.is_index(level, options_.index)});
   report_.points += points.size();
+}
+
+/// What has no level below or above ends at the least or the greatest height of the terrain.
+void ContourFile::add_bands() {
+  std::vector<std::span<const Point<2>>> rings;
+  bands_->finish([&](const PolygonWithHoles& polygon, std::int64_t band) {
+    rings.assign({polygon.outer});
+    rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
+    for (const auto& ring : rings) report_.points += ring.size();
+    file_->layer().add_band(
+        {.rings = rings,
+         .least = levels_.has(band) ? levels_.height(band) : report_.lowest,
+         .greatest = levels_.has(band + 1) ? levels_.height(band + 1) : report_.highest});
+    ++report_.polygons;
+  });
+  report_.spilled_bytes += bands_->stored_bytes();
 }
 
 void ContourFile::number_share(std::uint64_t first_vertex) { writer_->number_from(first_vertex); }
@@ -151,17 +180,18 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
       });
   writer_->finish(report.mesh);
   all.lines += writer_->lines();
-  watch.begin("write", "lines");
+  report_.lines = all.lines;
+  report_.short_lines = all.short_lines + writer_->short_lines();
+  report_.lowest = std::min(all.lowest, writer_->lowest());
+  report_.highest = std::max(all.highest, writer_->highest());
+  report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();
+  watch.begin("write", bands_ ? "polygons" : "lines");
+  if (bands_) add_bands();
   file_->finish();
   report.output_format = format_.name;
   report.output_bytes = file_->bytes();
-  report.write_seconds = watch.end(all.lines);
+  report.write_seconds = watch.end(bands_ ? report_.polygons : report_.lines);
   report.left_out += writer_->left_out();
-  report_.lines = all.lines;
-  report_.short_lines = all.short_lines + writer_->short_lines();
-  report_.lowest = all.lowest;
-  report_.highest = all.highest;
-  report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();
 }
 
 }  // namespace spillway::stream

@@ -12,6 +12,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/vectors/vector_file.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/sinks/band_store.h"
 #include "stream/sinks/contour_writer.h"
 #include "stream/sinks/line_store.h"
 
@@ -42,6 +43,8 @@ class ContourFile final : public OwnSink<ContourSink> {
   [[nodiscard]] bool keeps_coordinates(const MeshStart& start) const;
   void add(std::span<const Point<2>> points, std::int64_t level);
 
+  void add_bands();
+
   std::string path_;
   const VectorFormat& format_;
   ContourOptions options_;
@@ -52,6 +55,7 @@ class ContourFile final : public OwnSink<ContourSink> {
   bool writes_file_;                ///< or another process does
   std::optional<VectorFile> file_;  ///< of who writes it
   std::optional<LineStore> lines_;  ///< of the others
+  std::optional<BandStore> bands_;  ///< of who writes bands
   std::optional<ContourWriter> writer_;
   std::vector<WorldPoint> line_;
   ContourReport report_;

@@ -179,6 +179,76 @@ TEST_F(Contour, OfAnotherShapeDependOnNoTilesThreadsAndMeshes) {
   }
 }
 
+TEST_F(Contour, BandsCoverTheTerrainAndAreWoundAsGeoJsonAsks) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const Result result = space.run(
+      "spillway contour cone.txt -o c.geojson --force-crs --interval 5 --bands --stats s");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json bands = features(space, "c.geojson");
+  EXPECT_THAT(result.err, HasSubstr("; " + std::to_string(bands.size()) + " polygons of "));
+  EXPECT_EQ(nlohmann::json::parse(space.read("s"))["contours"]["polygons"], bands.size());
+  double sum = 0;
+  double top = 0;
+  double last = -100;
+  for (const nlohmann::json& band : bands) {
+    EXPECT_EQ(band["geometry"]["type"], "Polygon");
+    const double least = band["properties"]["min"];
+    EXPECT_EQ(band["properties"]["max"], least + 5);
+    EXPECT_GE(least, last);
+    last = least;
+    bool is_outer = true;
+    for (const auto& ring : band["geometry"]["coordinates"]) {
+      EXPECT_EQ(ring.front(), ring.back());
+      EXPECT_EQ(ring.front().size(), 2U);
+      double twice = 0;
+      for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
+        twice += ring[i][0].get<double>() * ring[i + 1][1].get<double>() -
+                 ring[i + 1][0].get<double>() * ring[i][1].get<double>();
+      }
+      EXPECT_EQ(twice > 0, is_outer);
+      is_outer = false;
+      sum += twice / 2;
+      if (least == 15) top += twice / 2;
+    }
+  }
+  EXPECT_NEAR(sum, 1600, 1e-3);
+  EXPECT_NEAR(top, M_PI * 25, 4);
+}
+
+TEST_F(Contour, BandsAreTheSameFileWhateverTilesAndThreads) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.succeed("spillway generate -q terrain -n 4000 -o in.las");
+  const auto file = [&](const std::string& options) {
+    space.succeed("spillway contour -q -o c.geojson --force-crs --interval 4 --bands " + options);
+    return space.read("c.geojson");
+  };
+  for (const std::string shape : {"", " --smooth 2 --simplify 0.5"}) {
+    const std::string expected = file("in.las --threads 1" + shape);
+    for (const std::string options : {"--threads 2", "--tile-points 300 --leaf-points 25"}) {
+      EXPECT_EQ(file("in.las " + options + shape), expected) << options << shape;
+      space.succeed("spillway triangulate -q in.las -o in.spm " + options);
+      EXPECT_EQ(file("in.spm" + shape), expected) << options << shape;
+    }
+  }
+}
+
+TEST_F(Contour, BandsOfAListEndAtTheLeastAndTheGreatestHeight) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.write("edge.xyz", "0.5 -0.5 0.5\n1.5 -0.5 1.5\n0.5 -1.5 0.5\n1.5 -1.5 1.5\n");
+  space.succeed("spillway contour -q edge.xyz -o c.json --force-crs --levels 1,9 --bands");
+  const nlohmann::json bands = features(space, "c.json");
+  ASSERT_EQ(bands.size(), 2U);
+  EXPECT_EQ(bands[0]["properties"], nlohmann::json::parse(R"({"min": 0.5, "max": 1})"));
+  EXPECT_EQ(bands[1]["properties"], nlohmann::json::parse(R"({"min": 1, "max": 9})"));
+  for (const std::string name : {"c.shp", "c.gpkg"}) {
+    space.succeed("spillway contour -q edge.xyz --levels 1,9 --bands -o " + name);
+  }
+  const Result drawing = space.run("spillway contour edge.xyz -o c.dxf --levels 1 --bands");
+  EXPECT_NE(drawing.exit_code, 0);
+  EXPECT_THAT(drawing.err, HasSubstr("DXF holds lines only; bands go to gpkg, shp or geojson"));
+  EXPECT_FALSE(space.has("c.dxf"));
+}
+
 TEST_F(Contour, WritesGeoPackagesShapefilesAndDrawings) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   for (const std::string name : {"c.gpkg", "c.shp", "c.dxf"}) {

@@ -281,6 +281,17 @@ TEST_F(RanksOfTheCommand, DrawTheSameContours) {
   }
 }
 
+TEST_F(RanksOfTheCommand, DrawTheSameBands) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  work_.succeed("spillway generate -q terrain -n 50000 -o in.las");
+  const std::string options = "contour -q in.las --interval 4 --force-crs --bands --simplify 0.5 ";
+  work_.succeed("spillway " + options + "-o a.geojson");
+  for (const int count : {1, 2, 5}) {
+    work_.succeed(ranks(count, options + "-o b.geojson"));
+    work_.succeed("sed s/'\"b\"'/'\"a\"'/ b.geojson | cmp - a.geojson");
+  }
+}
+
 TEST_F(RanksOfTheCommand, WorkWithFewerPointsThanThereAreOfThem) {
   work_.write("four.txt", "0 0 1\n1 0 2\n0 1 3\n1 1 4\n");
   expect_same_mesh(8, "four.txt");

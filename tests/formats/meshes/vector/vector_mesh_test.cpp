@@ -206,7 +206,7 @@ TEST(VectorMesh, OnlyTrianglesAreRead) {
   options.path = options.name = folder.file("contours.gpkg");
   options.driver = "GPKG";
   options.layer = "contours";
-  options.lines = true;
+  options.content = VectorContent::kLines;
   const auto layer = gdal().create_layer(options);
   layer->add_line({.points = std::vector<WorldPoint>{{0, 0, 5}, {1, 0, 5}, {1, 1, 5}}});
   layer->finish();
@@ -219,7 +219,7 @@ VectorLayerOptions lines_as_json(const TestFolder& folder, const std::string& cr
   options.path = options.name = folder.file("contours.geojson");
   options.driver = "GeoJSON";
   options.layer = "contours";
-  options.lines = true;
+  options.content = VectorContent::kLines;
   options.crs = crs;
   return options;
 }
@@ -282,7 +282,7 @@ TEST(VectorMesh, ContoursAsDxfHaveLayersAndTheUnitOfTheirSystem) {
     options.path = options.name = folder.file("contours.dxf");
     options.driver = "DXF";
     options.layer = "contours";
-    options.lines = true;
+    options.content = VectorContent::kLines;
     options.crs = crs;
     std::filesystem::remove(options.path);
     const auto layer = gdal().create_layer(options);
