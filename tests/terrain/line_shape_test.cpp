@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace spillway::test {
@@ -65,6 +66,31 @@ TEST(LineShape, ThatIsStraightStaysWhereSmooth) {
     EXPECT_NEAR(line[i][0], portals[i].at[0], 1e-12);
     EXPECT_NEAR(line[i][1], portals[i].at[1], 1e-12);
   }
+}
+
+/// A vertex on the level is the end of several portals, and other lines may be there.
+TEST(LineShape, IsEitherAtAVertexOrApartFromIt) {
+  std::mt19937 random(3);
+  const Point<2> vertex{88.48, 0.1};
+  const auto around = [&](double size) {
+    return Point<2>{vertex[0] + size * (static_cast<double>(random() % 2001) / 1000 - 1),
+                    vertex[1] + size * (static_cast<double>(random() % 2001) / 1000 - 1)};
+  };
+  std::size_t at_vertex = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<Portal> portals = {{vertex, vertex, vertex}};
+    for (int k = 0; k < 3; ++k) portals.push_back({vertex, vertex, around(0.5)});
+    const Point<2> end = around(2);
+    portals.push_back({end, end, end});
+    for (const Point<2>& p : shaped_line(portals, {.smooth = 0.5})) {
+      if (p == vertex) {
+        ++at_vertex;
+      } else {
+        EXPECT_GT(std::hypot(p[0] - vertex[0], p[1] - vertex[1]), 1e-12);
+      }
+    }
+  }
+  EXPECT_GT(at_vertex, 30000U);
 }
 
 TEST(LineShape, ThatIsClosedIsSmoothAtItsBeginningToo) {

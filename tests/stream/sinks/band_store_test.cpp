@@ -39,7 +39,11 @@ Terrain terrain_of(unsigned seed, double noise, double step) {
     for (std::uint32_t x = 0; x <= kSide; ++x) {
       double z = 6 * std::sin(x / 5.0) * std::cos(y / 6.0) + noise * shake(random);
       if (step > 0) z = step * std::round(z / step);
-      terrain.vertices.push_back({x + 0.2 * shake(random), y + 0.2 * shake(random), z});
+      // Of two decimals, as surveys have.
+      const auto shaken = [&](double where) {
+        return std::round(100 * (where + 0.2 * shake(random))) / 100;
+      };
+      terrain.vertices.push_back({shaken(x), shaken(y), z});
     }
   }
   for (std::uint32_t y = 0; y < kSide; ++y) {
