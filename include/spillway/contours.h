@@ -56,10 +56,10 @@ class SPILLWAY_API ContourSink : public MeshSink {
 };
 
 /// Contours as a vector file (gpkg, shp, geojson, dxf: by the extension), lines with higher ground
-/// to their left, and attributes: "elevation" and "index", 1 for index contours (in DXF: layers).
-/// Bands are polygons with the attributes "min" and "max", from the lowest one up. The file gets its name when it is complete. A quarter of the context's memory is for
-/// lines that are not complete. Throws Error: kInvalidArgument for options that cannot be,
-/// kInputOutput.
+/// to their left and the attributes "elevation" and "index", 1 for index contours (in DXF: layers).
+/// Bands are polygons with the attributes "min" and "max", from the lowest band up. The file gets
+/// its name when it is complete. A quarter of the context's memory is for lines that are not
+/// complete. Throws Error: kInvalidArgument for options that cannot be, kInputOutput.
 SPILLWAY_API std::unique_ptr<ContourSink> create_contours(const std::string& path,
                                                           const ContourOptions& options,
                                                           const Context& context);
