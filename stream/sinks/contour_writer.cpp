@@ -62,10 +62,25 @@ void ContourWriter::draw(const StreamNumbers& numbers, std::span<const WorldPoin
       ++left_out_;
       continue;
     }
-    if (options_.finds_hull) hull_.add(triangle);
+    if (options_.finds_hull) take_edges(corners.subspan(c, 3));
     segments_.clear();
     append_segments(triangle, options_.levels, options_.tolerance.sum(), segments_);
     for (const IsoSegment& segment : segments_) joiner_.add(segment);
+  }
+  remove_paired(edges_);
+  for (const ShortEdge& edge : edges_) {
+    const Corner lesser = corner(edge.lesser);
+    const Corner greater = corner(edge.greater);
+    hull_.add(edge.from_lesser ? HullEdge{lesser, greater} : HullEdge{greater, lesser});
+  }
+  edges_.clear();
+}
+
+void ContourWriter::take_edges(std::span<const std::uint32_t> triangle) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::uint32_t from = triangle[i];
+    const std::uint32_t to = triangle[(i + 1) % 3];
+    edges_.push_back({std::min(from, to), std::max(from, to), from < to});
   }
 }
 

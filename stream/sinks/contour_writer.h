@@ -67,6 +67,7 @@ class ContourWriter : public BlockSink {
   [[nodiscard]] std::vector<WorldPoint> in_output(std::span<const LatticePoint> vertices) const;
   [[nodiscard]] bool too_short(std::span<const Point<2>> points) const;
   [[nodiscard]] bool too_long(const std::array<Corner, 3>& corners) const;
+  void take_edges(std::span<const std::uint32_t> triangle);
   void take_heights(std::span<const WorldPoint> vertices);
   void draw(const StreamNumbers& numbers, std::span<const WorldPoint> vertices,
             std::span<const std::uint32_t> corners);
@@ -76,6 +77,7 @@ class ContourWriter : public BlockSink {
   HullEdges hull_;
   HullEdges::Sink hull_sink_;
   std::vector<IsoSegment> segments_;
+  std::vector<ShortEdge> edges_;  ///< of a block
   StreamVertices<WorldPoint> live_;
   double lowest_ = std::numeric_limits<double>::infinity();
   double highest_ = -std::numeric_limits<double>::infinity();

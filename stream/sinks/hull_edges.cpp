@@ -7,12 +7,23 @@
 
 namespace spillway::stream {
 
-std::size_t HullEdges::EndsHash::operator()(const Ends& ends) const {
-  return mix64(ends[0] ^ mix64(ends[1]));
+void remove_paired(std::vector<ShortEdge>& edges) {
+  std::ranges::sort(edges);
+  std::size_t left = 0;
+  for (std::size_t begin = 0; begin < edges.size();) {
+    std::size_t end = begin;
+    while (end < edges.size() && edges[end].lesser == edges[begin].lesser &&
+           edges[end].greater == edges[begin].greater) {
+      ++end;
+    }
+    if ((end - begin) % 2 == 1) edges[left++] = edges[begin];
+    begin = end;
+  }
+  edges.resize(left);
 }
 
-void HullEdges::add(const std::array<Corner, 3>& corners) {
-  for (std::size_t i = 0; i < 3; ++i) add(HullEdge{corners[i], corners[(i + 1) % 3]});
+std::size_t HullEdges::EndsHash::operator()(const Ends& ends) const {
+  return mix64(ends[0] ^ mix64(ends[1]));
 }
 
 void HullEdges::add(const HullEdge& edge) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <unordered_map>
+#include <vector>
 
 #include "src/terrain/isolines.h"
 
@@ -15,14 +17,25 @@ struct HullEdge {
   Corner to;
 };
 
+/// Such an edge by the short numbers of a block.
+struct ShortEdge {
+  std::uint32_t lesser = 0;
+  std::uint32_t greater = 0;
+  bool from_lesser = false;
+  auto operator<=>(const ShortEdge&) const = default;
+};
+
+/// Of the edges of a block's triangles leaves those of one triangle: most have two in their block,
+/// and sorting them takes a fraction of what HullEdges takes.
+void remove_paired(std::vector<ShortEdge>& edges);
+
 /// Finds the edges of a mesh that have one triangle only, as triangles come in any order. Keeps
 /// those that have one so far, at some 120 bytes each.
 class HullEdges {
  public:
   using Sink = std::function<void(const HullEdge&)>;
 
-  /// Corners run counter-clockwise.
-  void add(const std::array<Corner, 3>& corners);
+  /// An edge of one more triangle.
   void add(const HullEdge& edge);
 
   /// Gives out edges that have one triangle, and no other can come, as `is_final` says of the
