@@ -175,6 +175,20 @@ TEST(BadOutput, FileBeyondTheSizeLimit) {
   expect_failure(work, "ulimit -f 8; spillway triangulate -q in.npy -o mesh.ply", "mesh.ply");
 }
 
+TEST(BadOutput, ContoursBeyondTheSizeLimit) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 20000 -o in.las");
+  for (const std::string name : {"a.dxf", "a.geojson", "a.gpkg", "a.shp"}) {
+    for (const std::string what : {" --interval 2", " --interval 2 --bands"}) {
+      if (name == "a.dxf" && what.ends_with("--bands")) continue;
+      expect_failure(work,
+                     "ulimit -f 100; spillway contour -q in.las --force-crs -o " + name + what,
+                     "cannot write " + name);
+    }
+  }
+}
+
 TEST(BadOutput, FullDisk) {
   const Workspace work;
   const auto disk = work.folder() / "disk";

@@ -17,6 +17,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/test_paths.h"
 #include "tests/tools/command_runner.h"
@@ -190,8 +191,9 @@ TEST(Signals, WhileGdalWritesLeaveNothing) {
   work.succeed("spillway generate -q terrain -n 3e5 -o in.las; mkdir tmp");
   const auto before = work.names();
   std::mt19937 random(21);
-  for (int run = 0; run < 8; ++run) {
-    const std::string output = run % 2 == 0 ? "lines.shp" : "lines.gpkg";
+  const std::vector<std::string> outputs = {"lines.shp", "lines.gpkg", "lines.dxf"};
+  for (std::size_t run = 0; run < 3 * outputs.size(); ++run) {
+    const std::string& output = outputs[run % outputs.size()];
     const pid_t process = work.start(
         {"contour", "-q", "in.las", "-o", output, "--interval", "1", "--scratch-folder", "tmp"});
     for (int i = 0; i < 2000 && !work.has_unfinished(output); ++i) {
