@@ -124,7 +124,7 @@ WaitingPoints::~WaitingPoints() = default;
 void WaitingPoints::deal(PointFeed& points, const std::function<std::uint64_t()>& numbers) {
   tree_->fill(points);
   if (tree_->points_to_divide() > 0) tree_->divide_large();
-  heights_.emplace(numbers(), memory_ / kHeightShare, scratch_);
+  heights_ = std::make_unique<GroundHeights>(numbers(), memory_ / kHeightShare, scratch_);
   root_ = tree_->take_nodes<2>();
   if (!root_) return;
   index_ = TileIndex(*root_);
@@ -340,7 +340,7 @@ void WaitingPoints::finish(const std::function<void(std::uint64_t points)>& prog
 }
 
 std::uint64_t WaitingPoints::spilled_bytes() const {
-  return tree_->bytes_written() + spilled_.size() + (heights_ ? heights_->spilled_bytes() : 0);
+  return tree_->bytes_written() + spilled_.size();
 }
 
 }  // namespace spillway::stream

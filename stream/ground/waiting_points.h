@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "formats/disk/scratch_folder.h"
@@ -54,8 +55,8 @@ class WaitingPoints {
   /// points were looked at.
   void finish(const std::function<void(std::uint64_t points)>& progress);
 
-  /// After deal(); complete after finish().
-  [[nodiscard]] const GroundHeights& heights() const { return *heights_; }
+  /// What was found. After finish(), once.
+  [[nodiscard]] std::unique_ptr<GroundHeights> take_heights() { return std::move(heights_); }
   [[nodiscard]] std::uint64_t points() const { return tree_->points(); }
   [[nodiscard]] std::uint64_t located() const { return located_; }
   [[nodiscard]] std::uint64_t spilled_bytes() const;
@@ -85,7 +86,7 @@ class WaitingPoints {
   std::optional<TileNode<2>> root_;
   TileIndex index_;
   std::unique_ptr<Tile[]> tiles_;
-  std::optional<GroundHeights> heights_;
+  std::unique_ptr<GroundHeights> heights_;
   SharedScratch spilled_;
   std::mutex loader_mutex_;
   std::mutex relief_mutex_;

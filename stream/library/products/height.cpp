@@ -138,13 +138,13 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
           [&](std::uint64_t points) { watch.tell(points, static_cast<double>(points) / all); });
     });
     watch.end(waiting_->points());
-    repeated_->repeat();
-    HeightsAboveGround heights(run_, *repeated_, waiting_->heights(), options_);
-    PointConversion passed = pass_on(heights.run(), "write", sink_, context(), watch);
-    if (run_.files != nullptr) passed.skipped_files = run_.files->skipped();
-    report_ = heights.report();
-    report_.points = std::move(passed);
-    report_.spilled_bytes = waiting_->spilled_bytes() + repeated_->kept_bytes();
+    const std::unique_ptr<GroundHeights> found = waiting_->take_heights();
+    report_.spilled_bytes =
+        waiting_->spilled_bytes() + found->spilled_bytes() + repeated_->kept_bytes();
+    writer_.reset();
+    waiting_.reset();
+    freed_.give_back(context().memory());  // writing has its own needs
+    write(*found, watch);
   }
 
   /// When all is done; but for what is about the ground.
@@ -165,6 +165,17 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
         run_.files != nullptr && run_.files->any_order() && !run_.files->thins();
     repeated_.emplace(*run_.stream, can_read_again, *scratch_);
     return deal();
+  }
+
+  void write(const GroundHeights& ground, RunWatch& watch) {
+    repeated_->repeat();
+    HeightsAboveGround heights(run_, *repeated_, ground, options_);
+    PointConversion passed = pass_on(heights.run(), "write", sink_, context(), watch);
+    if (run_.files != nullptr) passed.skipped_files = run_.files->skipped();
+    const std::uint64_t spilled = report_.spilled_bytes;
+    report_ = heights.report();
+    report_.points = std::move(passed);
+    report_.spilled_bytes = spilled;
   }
 
   void check_crs(const MeshStart& start) const {
@@ -200,7 +211,7 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
   spillway::PointSink& sink_;
   const HeightOptions& options_;
   RunWatch& watch_;
-  const FreedMemory freed_;  ///< the process may hold this part of the memory, too
+  FreedMemory freed_;  ///< the process may hold this part of the memory, too
   std::shared_ptr<ScratchFolder> scratch_;
   RunPoints run_;
   std::optional<IntegerLattice> lattice_;  ///< of the ground
