@@ -39,12 +39,13 @@ Report MeshOrigin::send(MeshSink& sink, Run& run) const {
   const auto& [inputs, options, how, attributes, ground_classes] = std::get<Points>(from_);
   run.expect(kPhasesOfPoints);
   if (!ground_classes.empty()) {
-    const PointsAboveGround above =
-        open_above_ground(std::get<std::vector<std::string>>(inputs), options, ground_classes,
-                          {.min_height = 0, .foreign_crs = options.foreign_crs}, how, context);
-    TriangulateOptions of_heights = how;
-    if (how.heights == Heights::kFirst) of_heights.heights = Heights::kHighest;
-    return triangulate(*above.points, sink, of_heights, context);
+    TriangulateOptions of_ground = how;
+    of_ground.heights = Heights::kFirst;
+    of_ground.max_edge.reset();
+    const PointsAboveGround above = open_above_ground(
+        std::get<std::vector<std::string>>(inputs), options, ground_classes,
+        {.min_height = 0, .foreign_crs = options.foreign_crs}, of_ground, context);
+    return triangulate(*above.points, sink, how, context);
   }
   const auto points = open_inputs(inputs, options, context, attributes);
   refuse_choice_of_heights(how, points->header());

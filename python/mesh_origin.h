@@ -19,7 +19,7 @@ namespace spillway::python {
 class MeshOrigin {
  public:
   /// `attributes` is what points of an array carry. Of files with `ground_classes` z is the height
-  /// above the ground, 0 at least, and the highest counts where none is chosen.
+  /// above the ground, 0 at least.
   MeshOrigin(Inputs inputs, PointOptions options, TriangulateOptions how,
              AttributeColumns attributes, std::vector<int> ground_classes = {});
   MeshOrigin(std::string path, MeshOptions options);

@@ -161,8 +161,7 @@ def height(
     put_all(written, {"output_format": output_format, "las_version": las_version})
     written.force = bool(force)
     if attributes is not None:
-        names = as_names(attributes, "attributes")
-        written.attributes = names if replace_z or names == ["all"] else [*names, _ATTRIBUTE]
+        written.attributes = as_names(attributes, "attributes")
     which.metadata = True
     report = HeightReport(
         **_spillway.heights(
@@ -178,9 +177,6 @@ def height(
     )
     _warn_of_no_ground(report)
     return report
-
-
-_ATTRIBUTE = "HeightAboveGround"
 
 
 def _ground(
@@ -203,15 +199,18 @@ def _ground(
         where = "where the ground is a mesh"
         refuse(of_points, [name for name in of_points if name not in kept], where)
         return _spillway.MeshOrigin(points[0], mesh_options(joined, mesh_format))
+    how_read = ["skip_invalid", "salvage", "keep_withheld", "skip_broken"]
     if ground is None:
-        how_read = ("input_format", "columns", "skip_invalid", "salvage", "keep_withheld")
-        joined.update({name: options.get(name) for name in (*how_read, "skip_broken")})
+        how_read += ["input_format", "columns"]
+    joined.update({name: options.get(name) for name in how_read if options.get(name)})
     which = point_options(joined, 2)
-    put(which, "ground_class", ground_class, put_classes)
+    if ground_class is not None:
+        put(which, "ground_class", ground_class, put_classes)
     carried = {} if ground is None else attributes_of(ground, "ground")
     return _spillway.MeshOrigin(points, which, triangulate_options(options, 2), carried)
 
 
 def _warn_of_no_ground(report: HeightReport) -> None:
     if report.without_ground > 0:
-        tell(True, f"{report.without_ground} points lie over no triangle of the ground")
+        points = "1 point lies" if report.without_ground == 1 else f"{report.without_ground} points lie"
+        tell(True, f"{points} over no triangle of the ground")

@@ -422,7 +422,8 @@ def _canopy_origin(
     refuse(options, ["resume", "checkpoint_every"], "with chm, which takes two runs")
     ground = _spillway.PointOptions()
     put(ground, "ground_class", 2 if ground_class is None else ground_class, put_classes)
-    how = triangulate_options(options, 2)
+    heights = options.get("heights") or "highest"
+    how = triangulate_options({**options, "heights": heights}, 2)
     return _spillway.MeshOrigin(source, point_options(options, 0), how, {}, ground.classes)
 
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace spillway::stream {
 namespace {
@@ -33,18 +34,40 @@ GroundHeights::GroundHeights(std::uint64_t numbers, std::uint64_t memory, Scratc
       scratch_(scratch),
       stretches_(std::make_unique<Stretch[]>(stretch_count_)) {}
 
-void GroundHeights::add(std::vector<NumberedHeight>& found) {
-  std::ranges::sort(found, {}, &NumberedHeight::number);
-  for (std::size_t i = 0; i < found.size();) {
-    const std::uint64_t number = found[i].number / stretch_numbers_;
-    const std::uint64_t first = number * stretch_numbers_;
-    Stretch& stretch = stretches_[number];
-    const std::lock_guard lock(stretch.mutex);
-    for (; i < found.size() && found[i].number - first < stretch_numbers_; ++i) {
-      stretch.places.push_back(static_cast<std::uint32_t>(found[i].number - first));
-      stretch.heights.push_back(found[i].height);
-      if (stretch.places.size() == most_waiting_) spill(stretch);
-    }
+/// Sorted by their stretches alone, which takes two passes.
+void GroundHeights::add(std::span<const NumberedHeight> found) {
+  if (found.empty()) return;
+  const auto stretch_of = [this](const NumberedHeight& one) {
+    return static_cast<std::size_t>(one.number / stretch_numbers_);
+  };
+  std::size_t lowest = stretch_of(found[0]);
+  std::size_t highest = lowest;
+  for (const NumberedHeight& one : found) {
+    lowest = std::min(lowest, stretch_of(one));
+    highest = std::max(highest, stretch_of(one));
+  }
+  std::vector<std::size_t> ends(highest - lowest + 2);
+  for (const NumberedHeight& one : found) ++ends[stretch_of(one) - lowest + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<NumberedHeight> sorted(found.size());
+  for (const NumberedHeight& one : found) sorted[ends[stretch_of(one) - lowest]++] = one;
+  std::size_t begin = 0;
+  for (std::size_t s = lowest; s <= highest; ++s) {
+    const std::size_t end = ends[s - lowest];
+    put(s, std::span(sorted).subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+void GroundHeights::put(std::size_t number, std::span<const NumberedHeight> some) {
+  if (some.empty()) return;
+  Stretch& stretch = stretches_[number];
+  const std::uint64_t first = number * stretch_numbers_;
+  const std::lock_guard lock(stretch.mutex);
+  for (const NumberedHeight& one : some) {
+    stretch.places.push_back(static_cast<std::uint32_t>(one.number - first));
+    stretch.heights.push_back(one.height);
+    if (stretch.places.size() == most_waiting_) spill(stretch);
   }
 }
 

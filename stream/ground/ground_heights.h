@@ -22,8 +22,8 @@ class GroundHeights {
   /// Numbers are below `numbers`. `memory`: bytes for what waits; `scratch` must outlive it.
   GroundHeights(std::uint64_t numbers, std::uint64_t memory, ScratchFolder& scratch);
 
-  /// By any number of threads at once. `found` is sorted. Each number comes once at most.
-  void add(std::vector<NumberedHeight>& found);
+  /// By any number of threads at once. Each number comes once at most.
+  void add(std::span<const NumberedHeight> found);
 
   /// Replaces `heights` by those of `count` numbers from the first one on, not a number where none
   /// has come. After the last add(), by any number of threads at once.
@@ -45,6 +45,7 @@ class GroundHeights {
   };
   using Loaded = std::shared_ptr<const std::vector<double>>;
 
+  void put(std::size_t number, std::span<const NumberedHeight> some);
   void spill(Stretch& stretch);
   [[nodiscard]] Loaded loaded(std::uint64_t stretch) const;
   [[nodiscard]] std::vector<double> load(const Stretch& stretch) const;

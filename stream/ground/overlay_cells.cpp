@@ -7,16 +7,20 @@
 #include <utility>
 
 #include "src/parallel/parallel.h"
+#include "stream/ground/tile_index.h"
 
 namespace spillway::stream {
 namespace {
 
 constexpr double kTrianglesOfACell = 16384;
 constexpr double kMostCells = 1 << 18;
-/// So many triangles of each surface are joined at a time.
-constexpr std::size_t kJoinedAtATime = 65536;
-/// Triangles of a bucket, within a cell.
-constexpr double kTrianglesOfABucket = 2;
+// How the memory is shared out. Vectors have room for up to twice as much as is in them.
+constexpr std::uint64_t kHeldShare = 2;    // triangles in memory
+constexpr std::uint64_t kJoinedShare = 4;  // those that are joined
+/// Of a triangle that is joined: itself, and its box in up to three lists.
+constexpr std::size_t kJoinedBytes = sizeof(Triangle) + 3 * sizeof(NumberedBox);
+constexpr std::size_t kMostJoined = 65536;
+constexpr std::size_t kLeastJoined = 2048;
 
 Box<2> box_of(const Triangle& triangle) {
   Box<2> box;
@@ -40,6 +44,99 @@ std::pair<std::size_t, std::size_t> divided(const Box<2>& box, double cells) {
           static_cast<std::size_t>(across)};
 }
 
+std::vector<NumberedBox> boxes_of(std::span<const Triangle> triangles) {
+  std::vector<NumberedBox> boxes;
+  boxes.reserve(triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) boxes.push_back({box_of(triangles[t]), t});
+  return boxes;
+}
+
+/// Finds all pairs of boxes that meet, one of each of two sets, by halving the plane as often as
+/// it pays. A pair belongs to the half that has the lower left corner of what both have in common.
+class PairSearch {
+ public:
+  /// Told that corner, and the numbers of both.
+  using Found = std::function<void(const Point<2>& corner, std::uint32_t a, std::uint32_t b)>;
+
+  explicit PairSearch(Found found) : found_(std::move(found)) {}
+
+  void search(std::vector<NumberedBox> a, std::vector<NumberedBox> b) {
+    search(std::move(a), std::move(b), whole_space<2>());
+  }
+
+ private:
+  /// `region` is without its upper and right edges.
+  void search(std::vector<NumberedBox> a, std::vector<NumberedBox> b, const Box<2>& region) {
+    keep_those_in(box_around(b), a);
+    keep_those_in(box_around(a), b);
+    if (a.empty() || b.empty()) return;
+    if (a.size() * b.size() > kFewPairs) {
+      const Box<2> extent = box_around(a);
+      const int longest = extent.longest_axis();
+      for (const int axis : {longest, 1 - longest}) {
+        if (halve(a, b, region, axis)) return;
+      }
+    }
+    for (const NumberedBox& one : a) {
+      for (const NumberedBox& other : b) {
+        const Box<2> common = common_part(one.box, other.box);
+        if (!common.empty() && holds(region, common.lo))
+          found_(common.lo, one.number, other.number);
+      }
+    }
+  }
+
+  /// False, and nothing done, if too many boxes lie on both sides.
+  bool halve(std::vector<NumberedBox>& a, std::vector<NumberedBox>& b, const Box<2>& region,
+             int axis) {
+    const std::vector<NumberedBox>& more = a.size() < b.size() ? b : a;
+    std::vector<double> corners;
+    corners.reserve(more.size());
+    for (const NumberedBox& one : more) corners.push_back(one.box.lo[axis]);
+    const auto middle = corners.begin() + static_cast<std::ptrdiff_t>(corners.size() / 2);
+    std::ranges::nth_element(corners, middle);
+    const double cut = *middle;
+    std::array<std::vector<NumberedBox>, 2> low;
+    std::array<std::vector<NumberedBox>, 2> high;
+    for (const std::size_t set : {0, 1}) {
+      for (const NumberedBox& one : set == 0 ? a : b) {
+        if (one.box.lo[axis] < cut) low[set].push_back(one);
+        if (one.box.hi[axis] >= cut) high[set].push_back(one);
+      }
+    }
+    const std::size_t before = a.size() + b.size();
+    const std::size_t lower = low[0].size() + low[1].size();
+    const std::size_t upper = high[0].size() + high[1].size();
+    if (std::max(lower, upper) == before || lower + upper > before + before / 2) return false;
+    std::vector<NumberedBox>().swap(a);
+    std::vector<NumberedBox>().swap(b);
+    Box<2> part = region;
+    part.hi[axis] = cut;
+    search(std::move(low[0]), std::move(low[1]), part);
+    part = region;
+    part.lo[axis] = cut;
+    search(std::move(high[0]), std::move(high[1]), part);
+    return true;
+  }
+
+  static bool holds(const Box<2>& region, const Point<2>& p) {
+    return p[0] >= region.lo[0] && p[0] < region.hi[0] && p[1] >= region.lo[1] &&
+           p[1] < region.hi[1];
+  }
+  static Box<2> box_around(std::span<const NumberedBox> boxes) {
+    Box<2> all;
+    for (const NumberedBox& one : boxes) all.expand(one.box);
+    return all;
+  }
+  static void keep_those_in(const Box<2>& box, std::vector<NumberedBox>& boxes) {
+    std::erase_if(boxes, [&](const NumberedBox& one) { return common_part(one.box, box).empty(); });
+  }
+
+  static constexpr std::size_t kFewPairs = 512;
+
+  const Found found_;
+};
+
 }  // namespace
 
 struct OverlayCells::Cell {
@@ -56,8 +153,12 @@ struct OverlayCells::Cell {
 };
 
 OverlayCells::OverlayCells(const Box<2>& extent, std::uint64_t triangles, std::uint64_t memory,
-                           ScratchFolder& scratch)
-    : extent_(extent), memory_(memory), spilled_(scratch, "overlay") {
+                           unsigned threads, ScratchFolder& scratch)
+    : extent_(extent),
+      most_held_(memory / kHeldShare),
+      joined_at_a_time_(std::clamp<std::size_t>(memory / kJoinedShare / threads / 2 / kJoinedBytes,
+                                                kLeastJoined, kMostJoined)),
+      spilled_(scratch, "overlay") {
   const double cells = static_cast<double>(triangles) / kTrianglesOfACell;
   std::tie(rows_, columns_) = divided(extent, std::clamp(cells, 1.0, kMostCells));
   cells_ = std::make_unique<Cell[]>(rows_ * columns_);
@@ -89,7 +190,7 @@ void OverlayCells::add(std::size_t surface, std::span<const Triangle> triangles)
     all.insert(all.end(), some.begin(), some.end());
     held_bytes_ += some.size() * sizeof(Triangle);
   }
-  if (held_bytes_ > memory_) relieve();
+  if (held_bytes_ > most_held_) relieve();
 }
 
 /// Brings triangles to the disk, of the fullest cells first, until half of the memory is free.
@@ -105,7 +206,7 @@ void OverlayCells::relieve() {
   }
   std::ranges::sort(order, std::greater());
   for (const auto& [count, c] : order) {
-    if (held_bytes_ <= memory_ / 2) return;
+    if (held_bytes_ <= most_held_ / 2) return;
     const std::lock_guard lock(cells_[c].mutex);
     for (Cell::Surface& surface : cells_[c].surfaces) {
       const std::span<const std::byte> bytes = std::as_bytes(std::span(surface.triangles));
@@ -121,14 +222,14 @@ void OverlayCells::relieve() {
 void OverlayCells::visit(Cell& cell, std::size_t surface,
                          const std::function<void(std::span<const Triangle>)>& take) {
   const Cell::Surface& from = cell.surfaces[surface];
-  for (std::size_t done = 0; done < from.triangles.size(); done += kJoinedAtATime) {
+  for (std::size_t done = 0; done < from.triangles.size(); done += joined_at_a_time_) {
     take(std::span(from.triangles)
-             .subspan(done, std::min(kJoinedAtATime, from.triangles.size() - done)));
+             .subspan(done, std::min(joined_at_a_time_, from.triangles.size() - done)));
   }
   std::vector<Triangle> some;
   for (const auto& [offset, count] : from.spilled) {
     for (std::size_t done = 0; done < count; done += some.size()) {
-      some.resize(std::min(kJoinedAtATime, count - done));
+      some.resize(std::min(joined_at_a_time_, count - done));
       spilled_.read(offset + done * sizeof(Triangle), std::as_writable_bytes(std::span(some)));
       take(some);
     }
@@ -153,47 +254,12 @@ VolumeSums OverlayCells::between(const std::function<void(std::uint64_t cells)>&
   return all;
 }
 
-/// A pair of triangles whose boxes meet belongs to one cell, and to one bucket of it: those of the
-/// lower left corner of what the boxes have in common.
 void OverlayCells::add_between(std::span<const Triangle> first, std::span<const Triangle> second,
                                const Place& place, VolumeSums& sums) const {
-  std::vector<Box<2>> boxes;
-  Box<2> extent;
-  for (const Triangle& triangle : first) {
-    boxes.push_back(box_of(triangle));
-    extent.expand(boxes.back());
-  }
-  const auto [rows, columns] =
-      divided(extent, std::max(1.0, static_cast<double>(first.size()) / kTrianglesOfABucket));
-  const auto bucket_of = [&, rows = rows, columns = columns](const Point<2>& p) {
-    return Place{cell_of(p[1] - extent.lo[1], extent.extent(1), rows),
-                 cell_of(p[0] - extent.lo[0], extent.extent(0), columns)};
-  };
-  std::vector<std::vector<std::uint32_t>> buckets(rows * columns);
-  const auto visit_buckets = [&, columns = columns](const Box<2>& box, const auto& visit_bucket) {
-    const Place low = bucket_of(box.lo);
-    const Place high = bucket_of(box.hi);
-    for (std::size_t row = low.row; row <= high.row; ++row) {
-      for (std::size_t column = low.column; column <= high.column; ++column) {
-        visit_bucket(Place{row, column}, buckets[row * columns + column]);
-      }
-    }
-  };
-  for (std::uint32_t t = 0; t < boxes.size(); ++t) {
-    visit_buckets(boxes[t],
-                  [&](const Place&, std::vector<std::uint32_t>& bucket) { bucket.push_back(t); });
-  }
-  for (const Triangle& other : second) {
-    const Box<2> box = box_of(other);
-    if (common_part(box, extent).empty()) continue;
-    visit_buckets(box, [&](const Place& at, const std::vector<std::uint32_t>& bucket) {
-      for (const std::uint32_t t : bucket) {
-        const Box<2> common = common_part(box, boxes[t]);
-        if (common.empty() || bucket_of(common.lo) != at || place_of(common.lo) != place) continue;
-        terrain::add_between(first[t], other, sums);
-      }
-    });
-  }
+  PairSearch pairs([&](const Point<2>& corner, std::uint32_t t, std::uint32_t other) {
+    if (place_of(corner) == place) terrain::add_between(first[t], second[other], sums);
+  });
+  pairs.search(boxes_of(first), boxes_of(second));
 }
 
 }  // namespace spillway::stream

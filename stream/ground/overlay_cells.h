@@ -22,10 +22,10 @@ namespace spillway::stream {
 /// the disk.
 class OverlayCells {
  public:
-  /// `extent` is where most triangles will lie, `triangles` about how many; `memory` bytes to keep
-  /// to. `scratch` must outlive it.
+  /// `extent` is where most triangles will lie, `triangles` about how many, `memory` bytes to keep
+  /// to, `threads` how many will work at a time. `scratch` must outlive it.
   OverlayCells(const Box<2>& extent, std::uint64_t triangles, std::uint64_t memory,
-               ScratchFolder& scratch);
+               unsigned threads, ScratchFolder& scratch);
   ~OverlayCells();
 
   /// Takes triangles of the first (0) or the second (1) surface, corners in canonical order. By any number of threads at once.
@@ -54,7 +54,8 @@ class OverlayCells {
                    const Place& place, VolumeSums& sums) const;
 
   Box<2> extent_;
-  std::uint64_t memory_;
+  std::uint64_t most_held_;  ///< bytes
+  std::size_t joined_at_a_time_;
   std::size_t rows_ = 1;
   std::size_t columns_ = 1;
   std::unique_ptr<Cell[]> cells_;

@@ -31,7 +31,7 @@ class Heights(InFolder):
 
     def test_beside_the_ground_are_no_numbers(self):
         self.points[7, 0] = 5
-        with self.assertWarnsRegex(spillway.Warning, "1 points lie over no triangle"):
+        with self.assertWarnsRegex(spillway.Warning, "1 point lies over no triangle"):
             heights = spillway.height(self.points, ground=self.ground)
         self.assertEqual(np.flatnonzero(np.isnan(heights)).tolist(), [7])
 

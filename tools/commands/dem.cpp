@@ -98,9 +98,12 @@ TracedReport send_canopy(const DemCommandOptions& options, MeshSink& sink, const
   const std::vector<int> classes =
       options.ground_class.empty() ? std::vector<int>{2} : parse_classes(options.ground_class);
   TriangulateOptions how = triangulate_options(options, 2);
-  const PointsAboveGround above =
-      open_above_ground(options.inputs, point_options(options.input, 0), classes,
-                        {.min_height = 0, .foreign_crs = options.input.force_crs}, how, context);
+  TriangulateOptions of_ground = how;
+  of_ground.heights = Heights::kFirst;
+  of_ground.max_edge.reset();
+  const PointsAboveGround above = open_above_ground(
+      options.inputs, point_options(options.input, 0), classes,
+      {.min_height = 0, .foreign_crs = options.input.force_crs}, of_ground, context);
   progress.say(fmt::format(
       "{} points above a ground of {} triangles; {} below it and {} over no triangle left out",
       above.report.points.written, above.report.ground.mesh.simplices, above.report.below_ground,

@@ -213,6 +213,7 @@ DemOptions dem_options(const DemCommandOptions& options) {
   if (options.products == kCanopy) {
     refuse_given(*options.app, {"--tasks", "--resume", "--checkpoint-every"},
                  "with --product chm, which takes two runs");
+    refuse_given(*options.app, {"--mesh-format"}, "with --product chm, which is made of points");
   } else {
     refuse_given(*options.app, {"--ground-class"}, "without --product chm");
   }

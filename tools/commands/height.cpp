@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "formats/meshes/mesh_formats.h"
@@ -71,13 +72,21 @@ void check_output(const HeightCommandOptions& options) {
   check_las_version(output, format.has_versions);
 }
 
-/// With heights, whatever else is chosen.
-std::optional<std::vector<std::string>> chosen_attributes(const HeightCommandOptions& options) {
-  auto names = attribute_names(options.attributes);
-  if (names && !options.replace_z && *names != std::vector<std::string>{"all"}) {
-    names->emplace_back(kHeightAttribute);
+/// An input is replaced by what holds less, or other things, if that is wanted.
+void check_overwriting(const HeightCommandOptions& options) {
+  if (options.force || options.output.path == "-") return;
+  const auto is_output = [&](const std::string& path) {
+    std::error_code unknown;
+    return std::filesystem::equivalent(path, options.output.path, unknown);
+  };
+  const bool changes = options.replace_z || options.min_height || options.max_height;
+  if (std::ranges::any_of(options.ground, is_output) ||
+      (changes && std::ranges::any_of(options.inputs, is_output))) {
+    throw UsageError(
+        fmt::format("{} is an input, which would be replaced by something else: give "
+                    "another name, or --force",
+                    options.output.path));
   }
-  return names;
 }
 
 /// Whether the ground is a mesh.
@@ -121,6 +130,10 @@ HeightReport measure(const HeightCommandOptions& options, PointSink& sink,
   of_ground.classes = classes;
   of_ground.crs = points.crs;
   of_ground.foreign_crs = points.foreign_crs;
+  of_ground.skip_invalid = points.skip_invalid;
+  of_ground.salvage = points.salvage;
+  of_ground.skip_broken = points.skip_broken;
+  of_ground.keep_withheld = points.keep_withheld;
   const auto ground = open_points(options.ground, of_ground, context);
   return measure_heights(*source, *ground, sink, heights, how, context);
 }
@@ -177,6 +190,14 @@ int run(const HeightCommandOptions& options) {
     throw UsageError("standard input is either the points or the ground");
   }
   check_output(options);
+  check_overwriting(options);
+  if (options.ground.empty()) {
+    refuse_given(*options.app, {"--mesh-format"}, "without --ground, of which it tells");
+  }
+  if (options.min_height || options.max_height) {
+    refuse_given(*options.app, {"--nodata"},
+                 "with --min-height or --max-height, which leave out points without a height");
+  }
   check_statistics_file(options, options.output.path, "the points");
   ProgressLine progress = make_progress(options.report, pipes(options.inputs) > 0);
   reuse_freed_memory();
@@ -185,7 +206,7 @@ int run(const HeightCommandOptions& options) {
                                   {.format = format_name_of(options.output),
                                    .las_version = options.output.las_version,
                                    .force = options.force,
-                                   .attributes = chosen_attributes(options)},
+                                   .attributes = attribute_names(options.attributes)},
                                   context);
   HeightReport report;
   const TracedReport ground =

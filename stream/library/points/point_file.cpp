@@ -126,6 +126,13 @@ void PointFile::check(const PointFileOptions& options) const {
   }
 }
 
+void PointFile::want(const std::string& attribute) {
+  const AttributeChoice chosen = wanted_attributes();
+  if (chosen.all || std::ranges::find(chosen.names, attribute) != chosen.names.end()) return;
+  if (!options_.attributes) options_.attributes.emplace();
+  options_.attributes->push_back(attribute);
+}
+
 AttributeChoice PointFile::wanted_attributes() const {
   if (!format_.holds_attributes) return {};
   if (options_.attributes) return attribute_choice(*options_.attributes);

@@ -52,6 +52,9 @@ class PointFile final : public spillway::PointSink {
   [[nodiscard]] bool holds_attributes() const { return format_.holds_attributes; }
   [[nodiscard]] std::string_view title() const { return format_.title; }
 
+  /// This attribute is written, whatever others are. To be called before start().
+  void want(const std::string& attribute);
+
   /// Which attributes are to come with points.
   [[nodiscard]] AttributeChoice wanted_attributes() const;
 

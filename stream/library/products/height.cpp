@@ -17,6 +17,7 @@
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/freed_memory.h"
+#include "src/terrain/lattice_steps.h"
 #include "stream/ground/ground_writer.h"
 #include "stream/ground/repeated_points.h"
 #include "stream/ground/waiting_points.h"
@@ -35,6 +36,7 @@ namespace {
 /// The part of the memory that is for points.
 constexpr std::uint64_t kPointShare = 2;
 
+/// Of a file, also makes it hold heights.
 void check(const HeightOptions& options, spillway::PointSink& sink) {
   if (options.replace_z && !std::isfinite(options.nodata)) {
     throw InvalidArgument("points without ground need a number as z: choose a value for no data");
@@ -50,19 +52,13 @@ void check(const HeightOptions& options, spillway::PointSink& sink) {
     throw InvalidArgument(fmt::format("no height is {} at least and {} at most",
                                       *options.min_height, *options.max_height));
   }
-  const auto* const file = OwnParts::of(sink);
-  if (!options.replace_z && file != nullptr && !file->holds_attributes()) {
+  auto* const file = OwnParts::of(sink);
+  if (options.replace_z || file == nullptr) return;
+  if (!file->holds_attributes()) {
     throw InvalidArgument(fmt::format(
         "{} points have no attributes, so heights must take the place of z", file->title()));
   }
-}
-
-/// The step of a lattice is divided by rounding: what is a whole number of them but for that is one.
-double on_lattice(const IntegerLattice& lattice, int axis, double world) {
-  constexpr double kRoundingSteps = 1e-6;
-  const double steps = (world - lattice.offset[axis]) / lattice.scale[axis];
-  const double whole = std::nearbyint(steps);
-  return std::abs(steps - whole) <= kRoundingSteps ? whole : steps;
+  file->want(kHeightAttribute);
 }
 
 /// Points in the coordinates of the triangles, without what they carry.
@@ -96,7 +92,7 @@ class PlacedOverGround final : public PointFeed {
     if (points_.lattice() == ground_) return {point[0], point[1], 0};
     const WorldPoint world = in_world(points_.lattice(), point);
     if (!ground_) return {world[0], world[1], 0};
-    return {on_lattice(*ground_, 0, world[0]), on_lattice(*ground_, 1, world[1]), 0};
+    return {lattice_steps(*ground_, 0, world[0]), lattice_steps(*ground_, 1, world[1]), 0};
   }
 
   RepeatedPoints& points_;
@@ -241,6 +237,15 @@ class ScratchPath {
   std::error_code ignored_;
 };
 
+/// Whether an input is a pipe or the like.
+bool can_be_read_once(const std::string& path) {
+  std::error_code unknown;
+  const auto kind = std::filesystem::status(path, unknown).type();
+  return path == "-" || kind == std::filesystem::file_type::fifo ||
+         kind == std::filesystem::file_type::character ||
+         kind == std::filesystem::file_type::socket;
+}
+
 /// Writes all points to a file, whatever filters there are. Returns what became of them.
 PointConversion copy_points(const std::vector<std::string>& paths, const PointOptions& options,
                             const std::string& to, const Context& context) {
@@ -344,7 +349,10 @@ HeightReport measure_heights(const std::vector<std::string>& paths, const PointO
   std::vector<std::string> files = paths;
   std::optional<stream::ScratchPath> copy;
   std::vector<SkippedFile> skipped;
-  if (std::ranges::find(paths, "-") != paths.end()) {
+  if (std::ranges::any_of(paths, stream::can_be_read_once)) {
+    if (!how.resume_folder.empty()) {
+      throw runtime::InvalidArgument("points of a pipe cannot be gone on with: give files");
+    }
     files = {copy.emplace(context, "input").get()};
     skipped = stream::copy_points(paths, points, files[0], context).skipped_files;
     wanted.format = "spp";

@@ -10,6 +10,13 @@
 namespace spillway::stream {
 namespace {
 
+/// 0 where the two are equal but for roundings.
+double difference(double z, double ground) {
+  constexpr double kRoundings = 8 * std::numeric_limits<double>::epsilon();
+  const double height = z - ground;
+  return std::abs(height) <= kRoundings * (std::abs(z) + std::abs(ground)) ? 0 : height;
+}
+
 Attribute height_attribute() {
   return {.name = kHeightAttribute, .description = "height above the ground"};
 }
@@ -89,7 +96,7 @@ void HeightsAboveGround::decode(SourcePiece& piece, PointBlock& block) {
   ground_.read(block.index.front(), block.size(), heights);
   for (std::size_t i = 0; i < block.size(); ++i) {
     const double z = lattice ? lattice->to_world(2, block.points[i][2]) : block.points[i][2];
-    heights[i] = rounded(z - heights[i]);
+    heights[i] = rounded(difference(z, heights[i]));
   }
   others_.apply(block.attributes, block.size());
   std::vector<double> written = heights;

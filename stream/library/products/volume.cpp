@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <mutex>
@@ -125,6 +126,11 @@ class SurfaceSink : public OwnSink<PublicSink> {
 
   [[nodiscard]] CrsNeed crs_need() const override { return CrsNeed::kAll; }
   void identify(RunIdentity& identity) const override { identify_product("volume", "", identity); }
+  BlockSink* begin_again() override {
+    forget();
+    return &writer_.emplace(lattice_, z_factor_, max_edge_,
+                            [this](std::span<const Triangle> triangles) { take(triangles); });
+  }
   void finalize(RunWatch& /*watch*/, Report& report, OtherShares& /*others*/) override {
     writer_->finish(report.mesh);
     report.left_out += writer_->left_out();
@@ -134,6 +140,8 @@ class SurfaceSink : public OwnSink<PublicSink> {
   [[nodiscard]] bool is_complete() const { return is_complete_; }
   [[nodiscard]] const VolumeOptions& options() const { return options_; }
   [[nodiscard]] const std::string& crs() const { return crs_; }
+  /// What its heights are multiplied by.
+  [[nodiscard]] double z_factor() const { return z_factor_; }
   [[nodiscard]] const std::optional<IntegerLattice>& lattice() const { return lattice_; }
 
  protected:
@@ -142,18 +150,25 @@ class SurfaceSink : public OwnSink<PublicSink> {
     refuse_without_heights(start);
     crs_ = start.header.crs;
     lattice_ = start.header.lattice;
-    return writer_.emplace(start.header.lattice, z_factor_of(start, options_, this->context()),
-                           start.is_triangulated ? std::nullopt : options_.max_edge,
-                           [this](std::span<const Triangle> triangles) { take(triangles); });
+    if (!start.is_triangulated) max_edge_ = options_.max_edge;
+    z_factor_ = choose_z_factor(start);
+    return *begin_again();
   }
 
  private:
+  [[nodiscard]] virtual double choose_z_factor(const MeshStart& start) const {
+    return z_factor_of(start, options_, this->context());
+  }
+  /// All triangles that have come are void.
+  virtual void forget() {}
   /// By many threads at once.
   virtual void take(std::span<const Triangle> triangles) = 0;
 
   VolumeOptions options_;
   std::string crs_;
   std::optional<IntegerLattice> lattice_;
+  std::optional<double> max_edge_;
+  double z_factor_ = 1;
   std::optional<SurfaceWriter> writer_;
   bool is_complete_ = false;
 };
@@ -176,19 +191,15 @@ class LevelSink final : public SurfaceSink<LevelVolumeSink> {
   }
 
  private:
-  BlockSink& open(const MeshStart& start) override {
-    scaled_level_ = level_ * z_factor_of(start, options(), context());
-    return SurfaceSink::open(start);
-  }
+  void forget() override { sums_ = {}; }
   void take(std::span<const Triangle> triangles) override {
     VolumeSums some;
-    for (const Triangle& triangle : triangles) add_above(triangle, scaled_level_, some);
+    for (const Triangle& triangle : triangles) add_above(triangle, level_ * z_factor(), some);
     const std::lock_guard lock(mutex_);
     sums_.add(some);
   }
 
   const double level_;
-  double scaled_level_ = 0;
   std::mutex mutex_;  ///< guards the next one
   VolumeSums sums_;
 };
@@ -198,7 +209,8 @@ class OneOfTwo final : public SurfaceSink<spillway::MeshSink> {
  public:
   /// Called when the surface begins, and when it is known where it lies.
   struct Told {
-    std::function<void(const MeshStart& start)> begins;
+    std::function<double(const MeshStart& start)>
+        begins;  ///< returns what heights are multiplied by
     std::function<void(const Box<2>& extent, std::uint64_t vertices)> extent;
     std::function<void(std::span<const Triangle> triangles)> triangles;
   };
@@ -209,6 +221,7 @@ class OneOfTwo final : public SurfaceSink<spillway::MeshSink> {
   [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override {
     return limit / kTriangleShare;
   }
+  /// So no block comes before it is certain that none is taken back.
   [[nodiscard]] bool wants_extent() const override { return true; }
   void extent_known(const Box<2>& extent, std::uint64_t vertices) override {
     Box<2> box;
@@ -220,14 +233,16 @@ class OneOfTwo final : public SurfaceSink<spillway::MeshSink> {
     told_.extent(box, vertices);
   }
 
+  BlockSink* begin_again() override { return has_come_ ? nullptr : SurfaceSink::begin_again(); }
+
   [[nodiscard]] double area() const { return area_.value(); }
 
  private:
-  BlockSink& open(const MeshStart& start) override {
-    told_.begins(start);
-    return SurfaceSink::open(start);
+  [[nodiscard]] double choose_z_factor(const MeshStart& start) const override {
+    return told_.begins(start);
   }
   void take(std::span<const Triangle> triangles) override {
+    has_come_ = true;
     ExactSum some;
     for (const Triangle& triangle : triangles) some.add(plane_area(triangle));
     told_.triangles(triangles);
@@ -236,7 +251,8 @@ class OneOfTwo final : public SurfaceSink<spillway::MeshSink> {
   }
 
   const Told told_;
-  std::mutex mutex_;  ///< guards the next one
+  std::atomic<bool> has_come_ = false;  ///< some triangle
+  std::mutex mutex_;                    ///< guards the next one
   ExactSum area_;
 };
 
@@ -244,17 +260,20 @@ class BetweenTwo final : public VolumeBetween {
  public:
   BetweenTwo(const VolumeOptions& options, const Context& context)
       : context_(context),
+        options_(options),
         freed_(context.memory() / kTriangleShare),
         scratch_(context.state().scratch(context)),
-        first_({.begins = [](const MeshStart& /*start*/) {},
-                .extent =
-                    [this](const Box<2>& extent, std::uint64_t vertices) {
-                      cells_.emplace(extent, 2 * vertices, context_.memory() / kTriangleShare,
-                                     *scratch_);
-                    },
-                .triangles = [this](std::span<const Triangle> some) { cells_->add(0, some); }},
-               options, context),
-        second_({.begins = [this](const MeshStart& start) { check_second(start); },
+        first_(
+            {.begins =
+                 [this](const MeshStart& start) { return z_factor_of(start, options_, context_); },
+             .extent =
+                 [this](const Box<2>& extent, std::uint64_t vertices) {
+                   cells_.emplace(extent, 2 * vertices, context_.memory() / kTriangleShare,
+                                  context_.threads(), *scratch_);
+                 },
+             .triangles = [this](std::span<const Triangle> some) { cells_->add(0, some); }},
+            options, context),
+        second_({.begins = [this](const MeshStart& start) { return factor_of_second(start); },
                  .extent = [](const Box<2>& /*extent*/, std::uint64_t /*vertices*/) {},
                  .triangles = [this](std::span<const Triangle> some) { cells_->add(1, some); }},
                 options, context) {
@@ -288,12 +307,22 @@ class BetweenTwo final : public VolumeBetween {
   }
 
  private:
-  void check_second(const MeshStart& start) const {
+  /// Of surfaces of which one tells no coordinate system it is that of the other.
+  [[nodiscard]] double factor_of_second(const MeshStart& start) const {
     if (!first_.is_complete()) throw InvalidArgument("the first surface comes first");
     const std::string& crs = start.header.crs;
-    if (crs.empty() || first_.crs().empty() || crs == first_.crs() ||
-        first_.options().foreign_crs || gdal().same_crs(crs, first_.crs())) {
-      return;
+    if (crs.empty()) return first_.z_factor();
+    const double factor = z_factor_of(start, options_, context_);
+    if (first_.crs().empty() && factor != first_.z_factor()) {
+      throw Failure(
+          fmt::format("{} has heights in another unit than x and y, and the first surface names no "
+                      "coordinate system that tells so, too",
+                      start.name),
+          ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kGroundScale});
+    }
+    if (first_.crs().empty() || crs == first_.crs() || options_.foreign_crs ||
+        gdal().same_crs(crs, first_.crs())) {
+      return factor;
     }
     throw Failure(
         fmt::format("the first surface is in {}, but {} in {}; reproject one of them, or take "
@@ -303,6 +332,7 @@ class BetweenTwo final : public VolumeBetween {
   }
 
   const Context context_;
+  const VolumeOptions options_;
   const FreedMemory freed_;  ///< the process may hold this part of the memory, too
   std::shared_ptr<ScratchFolder> scratch_;
   std::optional<OverlayCells> cells_;

@@ -178,6 +178,42 @@ TEST_F(Height, MakesACanopyInOneCommand) {
   }
 }
 
+TEST_F(Height, IsTheSameFromANamedPipe) {
+  space.succeed("spillway height forest.laz --ground-class 2 -o file.csv --attributes none");
+  space.succeed(
+      "mkfifo pipe && (cat forest.laz > pipe &) && "
+      "spillway height pipe --ground-class 2 -o pipe.csv --attributes none");
+  EXPECT_EQ(space.read("pipe.csv"), space.read("file.csv"));
+}
+
+TEST_F(Height, IsWrittenToTextThatHasNoOtherAttributes) {
+  space.succeed("spillway height forest.csv --ground-class 2 -o out.xyz");
+  std::istringstream first(space.read("out.xyz"));
+  std::vector<std::string> words;
+  for (std::string line, word; words.empty() && std::getline(first, line);) {
+    std::istringstream parts(line);
+    while (parts >> word) words.push_back(word);
+  }
+  EXPECT_EQ(words.size(), 4U);
+}
+
+TEST_F(Height, OfPointsOnAnotherFineLatticeIsThatOfTheirPlaces) {
+  std::string points;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 30; ++x) {
+      points += std::to_string(500000 + 0.37 * x) + " " + std::to_string(5000000 + 0.37 * y) + " " +
+                std::to_string(x * y % 7) + "\n";
+    }
+  }
+  space.write("grid.xyz", points);
+  space.succeed(
+      "spillway convert grid.xyz -o ground.las --scale 0.0001 --offset 499000.003,4999000.007,0");
+  space.succeed("spillway height grid.xyz --ground ground.las -o out.csv");
+  const auto rows = rows_of(space.read("out.csv"));
+  EXPECT_EQ(rows.size(), 900U);
+  for (const auto& row : rows) EXPECT_EQ(row.back(), 0);
+}
+
 TEST_F(Height, TellsStatistics) {
   space.succeed("spillway height forest.laz --ground-class 2 -o out.laz --stats stats.json");
   const auto stats = nlohmann::json::parse(space.read("stats.json"));
@@ -205,6 +241,11 @@ TEST_F(Height, RefusesWhatCannotBe) {
       {"forest.csv --ground tin.spm --ground-class 2 -o out.csv", "--ground-class has no effect"},
       {"forest.csv --ground tin.spm --max-edge 3 -o out.csv", "--max-edge has no effect"},
       {"forest.csv --ground-class 2 -o out.csv --nodata none", "is not a height"},
+      {"forest.csv --ground-class 2 -o out.csv --mesh-format ply", "without --ground"},
+      {"forest.csv --ground-class 2 -o out.csv --min-height 2 --nodata 3",
+       "--nodata has no effect"},
+      {"forest.csv --ground tin.spm -o tin.spm --output-format spp", "--force"},
+      {"forest.csv --ground-class 2 -o forest.csv --replace-z", "--force"},
   };
   for (const auto& [arguments, message] : usage) {
     const Result result = space.run(std::string("spillway height ") + arguments);

@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/inputs/halved_box.h"
 
 namespace spillway::test {
 namespace {
@@ -115,6 +118,30 @@ TEST_F(VolumeCommand, RefusesWhatCannotBe) {
   space.write("flat.xy", "0 0\n1 0\n0 1\n");
   EXPECT_THAT(space.run("spillway volume flat.xy heap.xyz").err, HasSubstr("z"));
   EXPECT_EQ(space.run("spillway volume none.las heap.xyz").exit_code, 1);
+}
+
+TEST_F(VolumeCommand, ScalesHeightsOfBothSurfacesAlike) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  space.succeed(
+      "spillway convert heap.xyz -o heap.las --scale 0.01 --crs EPSG:32632+8228");  // feet
+  space.succeed("spillway convert ground.xyz -o ground.las --scale 0.01 --crs EPSG:32632+8228");
+  const auto both = measure("heap.las ground.las");
+  EXPECT_NEAR(both["cut"], 30.48, 1e-6);
+  EXPECT_EQ(measure("heap.las ground.xyz"), both);
+  const Result second = space.run("spillway volume heap.xyz ground.las");
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.err, HasSubstr("--z-factor"));
+}
+
+TEST_F(VolumeCommand, ReadsAgainWhereHeadersAreFalse) {
+  space.succeed("spillway generate terrain -n 40000 -q --grid 7x7 -o 't_#.las'");
+  const auto level = measure("'t_*.las' --level 400 --memory 64M");
+  const auto between = measure("'t_*.las' ground.xyz --memory 64M");
+  const std::vector<std::string> names = space.names();
+  halve_box(space, *std::ranges::find_if(
+                       names, [](const std::string& name) { return name.starts_with("t_"); }));
+  EXPECT_EQ(measure("'t_*.las' --level 400 --memory 64M"), level);
+  EXPECT_EQ(measure("'t_*.las' ground.xyz --memory 64M"), between);
 }
 
 TEST_F(VolumeCommand, RefusesDegreesAndOtherCoordinateSystems) {

@@ -77,7 +77,9 @@ TEST_F(VolumeOf, TwoPlanesIsThatOfTheWedgesBetweenThem) {
 TEST_F(VolumeOf, SurfacesHasTheSameBitsForAllThreadsAndMemories) {
   const auto first = surface(150'000, 3, hills);
   const auto second = surface(120'000, 4, tilted);
-  const Context usual(options());
+  ContextOptions large = options();
+  large.memory = "512M";
+  const Context usual(large);
   const Volume expected = between(first, second, usual);
   ContextOptions small = options();
   small.memory = "64M";
@@ -108,6 +110,18 @@ TEST_F(VolumeOf, MeshesIsThatOfTheirPoints) {
   }
   EXPECT_EQ(volume->measure().cut, expected.cut);
   EXPECT_EQ(volume->measure().fill, expected.fill);
+}
+
+TEST_F(VolumeOf, SurfacesWithPointsFarAwayIsThatWithoutThem) {
+  const Context context(options());
+  auto first = surface(30'000, 9, hills);
+  auto second = surface(30'000, 10, tilted);
+  const Volume near = between(first, second, context);
+  first.push_back({5e6, 2e6, 110});
+  second.push_back({-4e6, 3e6, 110});
+  const Volume far = between(first, second, context);
+  EXPECT_GE(far.area, near.area - 1e-3);
+  EXPECT_GE(far.cut, near.cut - 1e-3);  // triangles to those points cover each other, too
 }
 
 TEST_F(VolumeOf, SurfacesBesideEachOtherIsNothing) {
