@@ -22,6 +22,8 @@ class RepeatedPoints final : public PointStream {
   /// From now on the points come once more, when all have come.
   void repeat();
 
+  /// Whether they are read again where they come from.
+  [[nodiscard]] bool reads_again() const { return scratch_ == nullptr; }
   /// More than the largest number, once all have come.
   [[nodiscard]] std::uint64_t numbers() const { return numbers_; }
   [[nodiscard]] std::uint64_t kept_bytes() const { return file_ ? file_->size() : 0; }
@@ -49,7 +51,7 @@ class RepeatedPoints final : public PointStream {
   };
 
   void keep(std::uint64_t first, const PointBlock& block);
-  [[nodiscard]] bool is_kept() const { return scratch_ != nullptr; }
+  [[nodiscard]] bool is_kept() const { return !reads_again(); }
 
   PointStream& points_;
   ScratchFolder* scratch_ = nullptr;  ///< null: they are read again

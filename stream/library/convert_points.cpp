@@ -84,13 +84,13 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
 
 }  // namespace
 
-void prepare_for(spillway::PointSink& sink, EnginePoints& points) {
-  if (const auto* const file = OwnParts::of(sink)) {
-    points.settle_crs(file->crs_need());
-    points.carry(file->wanted_attributes());
-  } else {
-    points.carry(attribute_choice(sink.attributes_wanted()));
-  }
+AttributeChoice prepare_for(spillway::PointSink& sink, EnginePoints& points) {
+  const auto* const file = OwnParts::of(sink);
+  if (file != nullptr) points.settle_crs(file->crs_need());
+  const AttributeChoice choice =
+      file != nullptr ? file->wanted_attributes() : attribute_choice(sink.attributes_wanted());
+  points.carry(choice);
+  return choice;
 }
 
 PointConversion pass_on(const RunPoints& points, const char* phase, spillway::PointSink& sink,

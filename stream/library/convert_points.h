@@ -8,8 +8,8 @@
 
 namespace spillway::stream {
 
-/// To be called before points begin that will be given to the sink.
-void prepare_for(spillway::PointSink& sink, EnginePoints& points);
+/// To be called before points begin that will be given to the sink. Returns which attributes come.
+AttributeChoice prepare_for(spillway::PointSink& sink, EnginePoints& points);
 
 /// Gives all points to the sink, which it begins and finishes, as a phase of the run.
 PointConversion pass_on(const RunPoints& points, const char* phase, spillway::PointSink& sink,

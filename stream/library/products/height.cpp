@@ -108,6 +108,7 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
              const Context& context, RunWatch& watch)
       : OwnSink(context),
         points_(points),
+        carried_(prepare_for(sink, points)),
         sink_(sink),
         options_(options),
         watch_(watch),
@@ -160,10 +161,12 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
     const bool can_read_again =
         run_.files != nullptr && run_.files->any_order() && !run_.files->thins();
     repeated_.emplace(*run_.stream, can_read_again, *scratch_);
+    if (repeated_->reads_again()) run_.files->carry({});  // the first time their places will do
     return deal();
   }
 
   void write(const GroundHeights& ground, RunWatch& watch) {
+    if (repeated_->reads_again()) run_.files->carry(carried_);
     repeated_->repeat();
     HeightsAboveGround heights(run_, *repeated_, ground, options_);
     PointConversion passed = pass_on(heights.run(), "write", sink_, context(), watch);
@@ -204,6 +207,7 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
   }
 
   EnginePoints& points_;
+  const AttributeChoice carried_;  ///< by points as they are written
   spillway::PointSink& sink_;
   const HeightOptions& options_;
   RunWatch& watch_;
@@ -311,7 +315,6 @@ HeightReport measure(PointSource& source, spillway::PointSink& sink, const Heigh
   std::optional<ProgramPoints> program_points;
   auto* points = OwnParts::of(source);
   if (points == nullptr) points = &program_points.emplace(source, 0);
-  prepare_for(sink, *points);
   HeightSink heights(*points, sink, options, context, watch);
   const Report ground = send(heights);
   HeightReport report = heights.report();
