@@ -34,6 +34,7 @@ def main():
         scene = Scene(arguments.command.resolve(), pathlib.Path(work), arguments.folder.resolve())
         draw_mesh(scene)
         draw_dem(scene)
+        draw_products(scene)
         draw_contours(scene)
         draw_section(scene)
         draw_border(scene)
@@ -83,6 +84,29 @@ def draw_dem(scene):
     scene.save(figure, "dem.png")
 
 
+def draw_products(scene):
+    """Products of one place: of the lowest points, and what stands above these."""
+    box = tuple(float(side) for side in scene.box(60, 100, 300, 260).split(","))
+    place = {"resolution": 1, "bounds": box}
+    of_ground = {
+        "height": "gist_earth", "slope": "YlOrRd", "aspect": "twilight", "hillshade": "gray",
+        "facet-hillshade": "gray", "multi-hillshade": "gray", "roughness": "YlOrRd", "curvature": "PuOr",
+    }
+    ground = scene.pixels(product=list(of_ground), thin=(6, "lowest"), **place).values
+    scene.spillway("convert", "hills.las", "-o", "low.las", "--thin", "6:lowest")
+    above = ("hills.las", "--ground", "low.las", "--replace-z", "--min-height", 0, "-o", "above.las")
+    scene.spillway("height", *above)
+    heights = spillway.dem(str(scene.work / "above.las"), heights="highest", **place).values
+    figure, axes = plt.subplots(3, 3, figsize=(8.4, 6.6))
+    panels = [*zip(of_ground, ground, of_ground.values()), ("height above the ground", heights, "viridis")]
+    for axis, (title, values, colours) in zip(axes.flat, panels):
+        most = np.nanpercentile(np.abs(values), 98)
+        limits = {"vmin": -most, "vmax": most} if title == "curvature" else {}
+        axis.imshow(values, cmap=colours, **limits)
+        axis.set(title=title, xticks=[], yticks=[])
+    scene.save(figure, "products.png")
+
+
 def draw_contours(scene):
     """Contours of the lowest points over their shaded relief."""
     low = ("--thin", "6:lowest")
@@ -96,7 +120,7 @@ def draw_contours(scene):
     axis.imshow(shade.values, cmap="gray", vmin=-60, extent=extent)
     for line in lines:
         x, y, *_ = np.array(line["geometry"]["coordinates"]).T
-        heavy = line["properties"]["elevation"] % 10 == 0
+        heavy = line["properties"]["index"] == 1
         axis.plot(x, y, color="#8a4b1f", linewidth=1.1 if heavy else 0.4)
     axis.set(xticks=[], yticks=[], xlim=(scene.x + 50, scene.x + 370), ylim=(scene.y + 80, scene.y + 310))
     scene.save(figure, "contours.png")
