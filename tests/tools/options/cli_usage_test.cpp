@@ -45,8 +45,8 @@ std::size_t longest_line(const std::string& text) {
 TEST(Usage, HelpFitsTheColumnsThereAre) {
   const Workspace work;
   for (const std::string command :
-       {"", "triangulate", "dem", "height", "volume", "contour", "render", "info", "generate", "check", "convert",
-        "batch", "completion", "manual"}) {
+       {"", "triangulate", "dem", "height", "volume", "contour", "render", "info", "generate",
+        "check", "convert", "batch", "completion", "manual"}) {
     const std::string help = command + " --help";
     EXPECT_LE(longest_line(work.succeed("COLUMNS=60 spillway " + help)), 60U) << command;
     EXPECT_LE(longest_line(work.succeed("COLUMNS=80 spillway " + help)), 80U) << command;
@@ -237,11 +237,13 @@ bool is_good(const std::string& option, const std::string& value) {
   if (value == "nan") return option == "--nodata";
   if (value == "-1") {
     return option == "--nodata" || option == "--base" || option == "--levels" ||
-           option == "--offset";
+           option == "--offset" || option == "--level" || option == "--min-height" ||
+           option == "--max-height";
   }
-  return value == "1,5" && (option == "--levels" || option == "--view" || option == "--returns" ||
-                            option == "--keep-class" || option == "--columns" ||
-                            option == "--drop-class" || option == "--simulate-cores");
+  return value == "1,5" &&
+         (option == "--levels" || option == "--view" || option == "--returns" ||
+          option == "--keep-class" || option == "--columns" || option == "--drop-class" ||
+          option == "--ground-class" || option == "--simulate-cores");
 }
 
 TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {
@@ -253,6 +255,8 @@ TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {
       {"triangulate", "in.las -o x.ply"},
       {"dem", "in.las -o x.tif"},
       {"contour", "in.las -o x.geojson"},
+      {"height", "in.las -o x.las"},
+      {"volume", "in.las"},
       {"render", "in.las -o x.png"},
       {"info", "in.las"},
       {"convert", "in.las -o x.las"},
@@ -260,10 +264,9 @@ TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {
       {"check", "in.ply --points in.las"},
       {"batch", "in.las --to ply,dem.tif --output-dir out"}};
   const std::map<std::string, std::vector<std::pair<std::string, std::string>>> needed = {
-      {"dem", {{"--resolution", "5"}}},
-      {"batch", {{"--resolution", "5"}}},
-      {"contour", {{"--interval", "5"}}},
-      {"generate", {{"--count", "9"}}}};
+      {"dem", {{"--resolution", "5"}}},   {"batch", {{"--resolution", "5"}}},
+      {"contour", {{"--interval", "5"}}}, {"height", {{"--ground", "in.las"}}},
+      {"volume", {{"--level", "5"}}},     {"generate", {{"--count", "9"}}}};
   const std::vector<std::string> bad = {"-1", "nan", "inf", "0x10", "1e999", "1,5", " 5", "5x", ""};
   std::size_t options = 0;
   for (const auto& [subcommand, arguments] : commands) {
