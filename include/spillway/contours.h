@@ -28,8 +28,8 @@ struct ContourOptions {
   std::optional<double> min_length{};
   /// Smooth lines: a point of one is no farther than this from where the surface has its height.
   std::optional<double> smooth{};
-  /// Lines of few points, no farther than this from those with all. Neither makes lines of different
-  /// heights meet. Both in units of x and y.
+  /// Lines of few points, no farther than this from those with all. Neither makes lines of
+  /// different heights meet. Both in units of x and y.
   std::optional<double> simplify{};
   /// Instead of lines, polygons of what lies between neighbouring levels: not in DXF, and not with
   /// min_length. The edges of one band have to fit in memory, at some 200 bytes each.

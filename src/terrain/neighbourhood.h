@@ -32,9 +32,9 @@ struct RasterEnd {
   [[nodiscard]] bool any() const { return north || south || west || east; }
 };
 
-/// Makes up missing heights beyond the raster by going on as from the row or column inside, and gives
-/// other missing neighbours the pixel's own height; by the rules of `gdaldem -compute_edges`. Where
-/// the raster is one row or column, they stay missing.
+/// Makes up missing heights beyond the raster by going on as from the row or column inside, and
+/// gives other missing neighbours the pixel's own height; by the rules of `gdaldem -compute_edges`.
+/// Where the raster is one row or column, they stay missing.
 void complete(Neighbourhood& z, const RasterEnd& end);
 
 /// The gradient at the pixel. `sides`: its width and height, in the unit of the heights. Sums are

@@ -22,8 +22,8 @@ struct VolumeSums {
 double plane_area(const Triangle& triangle);
 
 /// Adds what lies between two triangles, over what they have in common in x and y: between two
-/// triangulations lies the sum over all pairs. Off by roundings of the triangles' size, not of their
-/// distance from the origin.
+/// triangulations lies the sum over all pairs. Off by roundings of the triangles' size, not of
+/// their distance from the origin.
 void add_between(const Triangle& first, const Triangle& second, VolumeSums& sums);
 
 /// Adds what lies between a triangle and a level.

@@ -28,7 +28,8 @@ class OverlayCells {
                unsigned threads, ScratchFolder& scratch);
   ~OverlayCells();
 
-  /// Takes triangles of the first (0) or the second (1) surface, corners in canonical order. By any number of threads at once.
+  /// Takes triangles of the first (0) or the second (1) surface, corners in canonical order. By any
+  /// number of threads at once.
   void add(std::size_t surface, std::span<const Triangle> triangles);
 
   /// What lies between both surfaces, by all threads; exact sums, so that neither their number nor

@@ -35,9 +35,9 @@ struct WaitingPointsOptions {
 /// both by tiles (after J. Patel, D. DeWitt, "Partition based spatial-merge join", SIGMOD 1996).
 /// Points are dealt into tiles first. A triangle waits at each tile that it may have points of.
 /// When so many have come that it pays, the tile's points are loaded, and those that are located
-/// are done; the others wait on. So most points are loaded once, with the triangles that come together,
-/// and only those at the borders of what was triangulated together more often. Triangles that wait
-/// in vain go to the disk when memory is short.
+/// are done; the others wait on. So most points are loaded once, with the triangles that come
+/// together, and only those at the borders of what was triangulated together more often. Triangles
+/// that wait in vain go to the disk when memory is short.
 class WaitingPoints {
  public:
   /// `scratch` must outlive it. Throws TooSmallLimit for less memory than that.

@@ -35,7 +35,7 @@ Visits scan(const PixelGrid& grid, const std::vector<Triangle>& triangles) {
         EXPECT_EQ(relation[pixel], -1) << "a pixel comes twice";
         relation[pixel] = run.relation == TriangleRelation::kInside   ? 0
                           : run.relation <= TriangleRelation::kEdge12 ? 1
-                                                                   : 2;
+                                                                      : 2;
         ++visits.touched[pixel];
         if (run.owned) ++visits.owners[pixel];
       }

@@ -91,8 +91,8 @@ Json raster_json(const DemReport& raster) {
           {"spilled_bytes", raster.spilled_bytes}};
 }
 
-/// Sends the triangles of points whose z is their height above the ground. Those below it, or beside
-/// it, are left out; of equal x and y the highest counts, unless --heights says otherwise.
+/// Sends the triangles of points whose z is their height above the ground. Those below it, or
+/// beside it, are left out; of equal x and y the highest counts, unless --heights says otherwise.
 TracedReport send_canopy(const DemCommandOptions& options, MeshSink& sink, const Context& context,
                          ProgressLine& progress) {
   const std::vector<int> classes =

@@ -27,8 +27,7 @@ constexpr const char* kExamples =
     "  spillway volume heap.las --level 102.5\n"
     "  spillway volume '2024/*.laz' '2025/*.laz' --keep-class 2 --max-edge 20\n"
     "Cut is where the first surface lies above the second, or above the level; docs/volume.md "
-    "tells "
-    "more.";
+    "tells more.";
 
 struct VolumeCommandOptions : TerrainOptions {
   std::optional<double> level;
