@@ -31,8 +31,8 @@ GroundHeights::GroundHeights(std::uint64_t numbers, std::uint64_t memory, Scratc
       stretch_count_(numbers / stretch_numbers_ + 1),
       most_waiting_(
           std::max<std::size_t>(memory / stretch_count_ / kHeightBytes / kGrowth, kLeastWaiting)),
-      scratch_(scratch),
-      stretches_(std::make_unique<Stretch[]>(stretch_count_)) {}
+      stretches_(std::make_unique<Stretch[]>(stretch_count_)),
+      spilled_(scratch, "heights") {}
 
 /// Sorted by their stretches alone, which takes two passes.
 void GroundHeights::add(std::span<const NumberedHeight> found) {
@@ -72,11 +72,9 @@ void GroundHeights::put(std::size_t number, std::span<const NumberedHeight> some
 }
 
 void GroundHeights::spill(Stretch& stretch) {
-  const std::lock_guard lock(file_mutex_);
-  if (!file_) file_ = scratch_.create("heights");
-  stretch.spilled.push_back({file_->size(), stretch.places.size()});
-  file_->append(std::as_bytes(std::span(stretch.places)));
-  file_->append(std::as_bytes(std::span(stretch.heights)));
+  stretch.spilled.push_back({spilled_.append(std::as_bytes(std::span(stretch.places))),
+                             spilled_.append(std::as_bytes(std::span(stretch.heights))),
+                             stretch.places.size()});
   stretch.places.clear();
   stretch.heights.clear();
 }
@@ -117,9 +115,8 @@ std::vector<double> GroundHeights::load(const Stretch& stretch) const {
   for (const Spilled& spilled : stretch.spilled) {
     places.resize(spilled.count);
     heights.resize(spilled.count);
-    file_->read(spilled.offset, std::as_writable_bytes(std::span(places)));
-    file_->read(spilled.offset + spilled.count * sizeof(std::uint32_t),
-                std::as_writable_bytes(std::span(heights)));
+    spilled_.read(spilled.places, std::as_writable_bytes(std::span(places)));
+    spilled_.read(spilled.heights, std::as_writable_bytes(std::span(heights)));
     put(places, heights);
   }
   put(stretch.places, stretch.heights);

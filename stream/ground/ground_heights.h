@@ -11,6 +11,7 @@
 
 #include "formats/disk/scratch_folder.h"
 #include "src/terrain/unlocated_points.h"
+#include "stream/ground/shared_scratch.h"
 
 namespace spillway::stream {
 
@@ -29,12 +30,13 @@ class GroundHeights {
   /// has come. After the last add(), by any number of threads at once.
   void read(std::uint64_t first, std::size_t count, std::vector<double>& heights) const;
 
-  [[nodiscard]] std::uint64_t spilled_bytes() const { return file_ ? file_->size() : 0; }
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return spilled_.size(); }
 
  private:
-  /// Heights on the disk: so many numbers in their stretch, and then so many heights.
+  /// Heights on the disk: so many places in their stretch, and so many heights.
   struct Spilled {
-    std::uint64_t offset = 0;
+    std::uint64_t places = 0;   ///< where they begin
+    std::uint64_t heights = 0;  ///< likewise
     std::size_t count = 0;
   };
   struct Stretch {
@@ -53,10 +55,8 @@ class GroundHeights {
   std::uint64_t stretch_numbers_;
   std::uint64_t stretch_count_;
   std::size_t most_waiting_;  ///< of a stretch
-  ScratchFolder& scratch_;
   std::unique_ptr<Stretch[]> stretches_;
-  std::mutex file_mutex_;
-  std::unique_ptr<ScratchFile> file_;
+  SharedScratch spilled_;
   mutable std::mutex loaded_mutex_;                              ///< guards the next one
   mutable std::deque<std::pair<std::uint64_t, Loaded>> loaded_;  ///< those asked for last
 };

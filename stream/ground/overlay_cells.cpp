@@ -8,6 +8,7 @@
 
 #include "src/parallel/parallel.h"
 #include "stream/ground/tile_index.h"
+#include "stream/ground/triangle_list.h"
 
 namespace spillway::stream {
 namespace {
@@ -140,16 +141,12 @@ class PairSearch {
 }  // namespace
 
 struct OverlayCells::Cell {
-  struct Spilled {
-    std::uint64_t offset = 0;
-    std::size_t count = 0;
-  };
-  struct Surface {
-    std::vector<Triangle> triangles;
-    std::vector<Spilled> spilled;
-  };
   std::mutex mutex;  ///< guards the other
-  std::array<Surface, 2> surfaces;
+  std::array<TriangleList, 2> surfaces;
+
+  [[nodiscard]] std::uint64_t held_bytes() const {
+    return surfaces[0].held_bytes() + surfaces[1].held_bytes();
+  }
 };
 
 OverlayCells::OverlayCells(const Box<2>& extent, std::uint64_t triangles, std::uint64_t memory,
@@ -186,8 +183,7 @@ void OverlayCells::add(std::size_t surface, std::span<const Triangle> triangles)
   for (const auto& [number, some] : by_cell) {
     Cell& cell = cells_[number];
     const std::lock_guard lock(cell.mutex);
-    std::vector<Triangle>& all = cell.surfaces[surface].triangles;
-    all.insert(all.end(), some.begin(), some.end());
+    cell.surfaces[surface].add(some);
     held_bytes_ += some.size() * sizeof(Triangle);
   }
   if (held_bytes_ > most_held_) relieve();
@@ -197,43 +193,15 @@ void OverlayCells::add(std::size_t surface, std::span<const Triangle> triangles)
 void OverlayCells::relieve() {
   const std::unique_lock relief(relief_mutex_, std::try_to_lock);
   if (!relief) return;
-  std::vector<std::pair<std::size_t, std::size_t>> order;
-  for (std::size_t c = 0; c < cells(); ++c) {
+  const auto held_bytes = [this](std::size_t c) {
     const std::lock_guard lock(cells_[c].mutex);
-    const auto& [first, second] = cells_[c].surfaces;
-    const std::size_t count = first.triangles.size() + second.triangles.size();
-    if (count > 0) order.emplace_back(count, c);
-  }
-  std::ranges::sort(order, std::greater());
-  for (const auto& [count, c] : order) {
-    if (held_bytes_ <= most_held_ / 2) return;
+    return cells_[c].held_bytes();
+  };
+  spill_fullest(cells(), held_bytes, [this](std::size_t c) {
     const std::lock_guard lock(cells_[c].mutex);
-    for (Cell::Surface& surface : cells_[c].surfaces) {
-      const std::span<const std::byte> bytes = std::as_bytes(std::span(surface.triangles));
-      if (bytes.empty()) continue;
-      surface.spilled.push_back({spilled_.append(bytes), surface.triangles.size()});
-      held_bytes_ -= bytes.size();
-      std::vector<Triangle>().swap(surface.triangles);
-    }
-  }
-}
-
-/// Calls take(triangles) for all of a surface, some at a time.
-void OverlayCells::visit(Cell& cell, std::size_t surface,
-                         const std::function<void(std::span<const Triangle>)>& take) {
-  const Cell::Surface& from = cell.surfaces[surface];
-  for (std::size_t done = 0; done < from.triangles.size(); done += joined_at_a_time_) {
-    take(std::span(from.triangles)
-             .subspan(done, std::min(joined_at_a_time_, from.triangles.size() - done)));
-  }
-  std::vector<Triangle> some;
-  for (const auto& [offset, count] : from.spilled) {
-    for (std::size_t done = 0; done < count; done += some.size()) {
-      some.resize(std::min(joined_at_a_time_, count - done));
-      spilled_.read(offset + done * sizeof(Triangle), std::as_writable_bytes(std::span(some)));
-      take(some);
-    }
-  }
+    for (TriangleList& surface : cells_[c].surfaces) held_bytes_ -= surface.spill(spilled_);
+    return held_bytes_ > most_held_ / 2;
+  });
 }
 
 VolumeSums OverlayCells::between(const std::function<void(std::uint64_t cells)>& progress) {
@@ -243,9 +211,11 @@ VolumeSums OverlayCells::between(const std::function<void(std::uint64_t cells)>&
   parallel_for(cells(), 1, [&](std::size_t c, std::size_t, std::size_t) {
     VolumeSums sums;
     const Place place{c / columns_, c % columns_};
-    visit(cells_[c], 0, [&](std::span<const Triangle> first) {
-      visit(cells_[c], 1,
-            [&](std::span<const Triangle> second) { add_between(first, second, place, sums); });
+    const auto& [all_first, all_second] = cells_[c].surfaces;
+    all_first.visit(spilled_, joined_at_a_time_, [&](std::span<const Triangle> first) {
+      all_second.visit(spilled_, joined_at_a_time_, [&](std::span<const Triangle> second) {
+        add_between(first, second, place, sums);
+      });
     });
     const std::lock_guard lock(mutex);
     all.add(sums);

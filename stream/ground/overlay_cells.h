@@ -49,8 +49,6 @@ class OverlayCells {
 
   [[nodiscard]] Place place_of(const Point<2>& p) const;
   void relieve();
-  void visit(Cell& cell, std::size_t surface,
-             const std::function<void(std::span<const Triangle>)>& take);
   void add_between(std::span<const Triangle> first, std::span<const Triangle> second,
                    const Place& place, VolumeSums& sums) const;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/parallel/parallel.h"
+#include "stream/ground/triangle_list.h"
 #include "stream/tiles/storage/stored_points.h"
 
 namespace spillway::stream {
@@ -73,21 +74,18 @@ struct WaitingPoints::Workspace {
   UnlocatedPoints points;
   std::vector<NumberedPlace> rest;
   std::vector<NumberedHeight> found;
-  std::vector<Triangle> triangles;
 };
 
 /// What waits at a tile. Whoever has both mutexes locked `places_mutex` first.
 struct WaitingPoints::Tile {
-  /// Triangles or places on the disk.
+  /// Places on the disk.
   struct Spilled {
     std::uint64_t offset = 0;
     std::size_t count = 0;
   };
 
-  std::mutex mutex;  ///< guards the next three
-  std::vector<Triangle> triangles;
-  std::vector<Spilled> spilled;
-  std::size_t waiting = 0;  ///< triangles, also on the disk
+  std::mutex mutex;  ///< guards the next one
+  TriangleList triangles;
 
   Box<2> box;
   std::atomic<std::uint64_t> unlocated = 0;  ///< points
@@ -196,9 +194,8 @@ void WaitingPoints::wait_at(Tile& tile, const Block& block,
   if (numbers.empty()) return;
   {
     const std::lock_guard lock(tile.mutex);
-    if (tile.waiting + numbers.size() < tile.enough()) {
-      for (const std::uint32_t t : numbers) tile.triangles.push_back(block.triangle(t));
-      tile.waiting += numbers.size();
+    if (tile.triangles.size() + numbers.size() < tile.enough()) {
+      for (const std::uint32_t t : numbers) tile.triangles.add(block.triangle(t));
       triangle_bytes_ += numbers.size() * sizeof(Triangle);
       return;
     }
@@ -209,13 +206,10 @@ void WaitingPoints::wait_at(Tile& tile, const Block& block,
 /// Looks for the tile's points in these triangles and in those that wait at it.
 void WaitingPoints::locate(Tile& tile, const Block& block, std::span<const std::uint32_t> numbers) {
   const std::lock_guard busy(tile.places_mutex);
-  std::vector<Triangle> triangles;
-  std::vector<Tile::Spilled> spilled;
+  TriangleList triangles;
   {
     const std::lock_guard lock(tile.mutex);
-    triangles.swap(tile.triangles);
-    spilled.swap(tile.spilled);
-    tile.waiting = 0;
+    std::swap(triangles, tile.triangles);
   }
   std::unique_ptr<Workspace> work = take_workspace();
   UnlocatedPoints& points = work->points;
@@ -225,15 +219,9 @@ void WaitingPoints::locate(Tile& tile, const Block& block, std::span<const std::
     points.assign(work->places);
     found.clear();
     for (const std::uint32_t t : numbers) points.take_located(block.triangle(t), found);
-    for (const Triangle& triangle : triangles) points.take_located(triangle, found);
-    for (const auto& [offset, count] : spilled) {
-      std::vector<Triangle>& some = work->triangles;
-      for (std::size_t done = 0; done < count && points.size() > 0; done += some.size()) {
-        some.resize(std::min(count - done, kReadAtATime));
-        spilled_.read(offset + done * sizeof(Triangle), std::as_writable_bytes(std::span(some)));
-        for (const Triangle& triangle : some) points.take_located(triangle, found);
-      }
-    }
+    triangles.visit(spilled_, kReadAtATime, [&](std::span<const Triangle> some) {
+      for (const Triangle& triangle : some) points.take_located(triangle, found);
+    });
     work->rest.clear();
     points.append_to(work->rest);
     keep_rest(tile, work->rest);
@@ -242,7 +230,7 @@ void WaitingPoints::locate(Tile& tile, const Block& block, std::span<const std::
     heights_->add(found);
   });
   give_back(std::move(work));
-  triangle_bytes_ -= triangles.size() * sizeof(Triangle);
+  triangle_bytes_ -= triangles.held_bytes();
   tile.unlocated = unlocated;
 }
 
@@ -310,22 +298,15 @@ void WaitingPoints::keep_rest(Tile& tile, std::span<const NumberedPlace> rest) {
 void WaitingPoints::relieve() {
   const std::unique_lock relief(relief_mutex_, std::try_to_lock);
   if (!relief) return;
-  std::vector<std::pair<std::size_t, std::size_t>> order;
-  for (std::size_t t = 0; t < index_.tiles().size(); ++t) {
+  const auto held_bytes = [this](std::size_t t) {
     const std::lock_guard lock(tiles_[t].mutex);
-    if (!tiles_[t].triangles.empty()) order.emplace_back(tiles_[t].triangles.size(), t);
-  }
-  std::ranges::sort(order, std::greater());
-  for (const auto& [count, t] : order) {
-    if (triangle_bytes_ <= memory_ / kTriangleShare / 2) return;
-    Tile& tile = tiles_[t];
-    const std::lock_guard lock(tile.mutex);
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(tile.triangles));
-    if (bytes.empty()) continue;
-    tile.spilled.push_back({spilled_.append(bytes), tile.triangles.size()});
-    triangle_bytes_ -= bytes.size();
-    std::vector<Triangle>().swap(tile.triangles);
-  }
+    return tiles_[t].triangles.held_bytes();
+  };
+  spill_fullest(index_.tiles().size(), held_bytes, [this](std::size_t t) {
+    const std::lock_guard lock(tiles_[t].mutex);
+    triangle_bytes_ -= tiles_[t].triangles.spill(spilled_);
+    return triangle_bytes_ > memory_ / kTriangleShare / 2;
+  });
 }
 
 void WaitingPoints::finish(const std::function<void(std::uint64_t points)>& progress) {
@@ -333,7 +314,7 @@ void WaitingPoints::finish(const std::function<void(std::uint64_t points)>& prog
   std::uint64_t done = 0;  // guarded by mutex
   parallel_for(index_.tiles().size(), 1, [&](std::size_t t, std::size_t, std::size_t) {
     Tile& tile = tiles_[t];
-    if (tile.waiting > 0 && tile.unlocated > 0) locate(tile, {}, {});
+    if (tile.triangles.size() > 0 && tile.unlocated > 0) locate(tile, {}, {});
     const std::lock_guard lock(mutex);
     progress(done += index_.tiles()[t]->points);
   });

@@ -19,6 +19,7 @@
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
 #include "stream/library/products/pixels_in_memory.h"
+#include "stream/library/products/surface_units.h"
 #include "stream/plan/memory_plan.h"
 #include "stream/sinks/dem_shares.h"
 
@@ -76,12 +77,6 @@ void check_type(const DemOptions& options) {
         fmt::format("bytes hold shades, from 1 to 255, and not {}: choose float32",
                     dem_product_names()[static_cast<std::size_t>(product)]));
   }
-}
-
-void check_z_factor(const std::optional<double>& factor) {
-  if (!factor || (*factor > 0 && std::isfinite(*factor))) return;
-  throw InvalidArgument(
-      fmt::format("heights are multiplied by a number above 0, not by {}", *factor));
 }
 
 void check_light_and_file(const DemOptions& options) {
@@ -277,9 +272,8 @@ GroundScale DemFile::ground() const {
             .semi_major = units.semi_major,
             .flattening = units.flattening};
   }
-  constexpr double kRounding = 1e-9;  // the two feet differ by 2e-6
-  const double factor = units.vertical / units.horizontal;
-  if (!(factor > 0) || !std::isfinite(factor) || std::abs(factor - 1) <= kRounding) return {};
+  const double factor = z_factor_by(units);
+  if (factor == 1) return {};
   if (context().options().detail) {
     context().options().detail(
         fmt::format("{}: slopes, shades and curvatures multiply heights by {:.12g}",
@@ -326,14 +320,8 @@ PixelGrid DemFile::grid_of(const Box<2>& extent) const {
 }
 
 void DemFile::check_crs(const MeshStart& start) const {
-  const std::string& crs = start.header.crs;
-  if (crs.empty() || like_.crs.empty() || options_.foreign_crs) return;
-  if (gdal().same_crs(crs, like_.crs)) return;
-  throw Failure(
-      fmt::format("{} is in {}, but {} in {}; reproject one of them, or take coordinates "
-                  "as they are",
-                  start.name, gdal().crs_name(crs), options_.like, gdal().crs_name(like_.crs)),
-      ErrorCode::kBadInput, {.file = options_.like, .remedy = Remedy::kForeignCrs});
+  if (options_.foreign_crs) return;
+  check_same_crs(start.name, start.header.crs, options_.like, like_.crs, options_.like);
 }
 
 /// Refuses a raster that is large because of points far away, unless that is wanted. Says how large

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "formats/gdal/gdal.h"
 #include "src/error.h"
 #include "src/parallel/parallel.h"
 #include "src/runtime/freed_memory.h"
@@ -28,6 +27,7 @@
 #include "stream/library/points/point_file.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/products/heights_above_ground.h"
+#include "stream/library/products/surface_units.h"
 #include "stream/source/joined_inputs.h"
 
 namespace spillway::stream {
@@ -157,7 +157,10 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
       throw Failure(run_.name.empty() ? "the points have no z" : run_.name + ": points have no z",
                     ErrorCode::kDegenerateInput);
     }
-    check_crs(start);
+    if (!options_.foreign_crs) {
+      check_same_crs(run_.name, run_.crs, "the ground, " + start.name + ",", start.header.crs,
+                     run_.name);
+    }
     const bool can_read_again =
         run_.files != nullptr && run_.files->any_order() && !run_.files->thins();
     repeated_.emplace(*run_.stream, can_read_again, *scratch_);
@@ -175,19 +178,6 @@ class HeightSink final : public OwnSink<spillway::MeshSink> {
     report_ = heights.report();
     report_.points = std::move(passed);
     report_.spilled_bytes = spilled;
-  }
-
-  void check_crs(const MeshStart& start) const {
-    const std::string& ground = start.header.crs;
-    if (options_.foreign_crs || run_.crs.empty() || ground.empty() || run_.crs == ground ||
-        gdal().same_crs(run_.crs, ground)) {
-      return;
-    }
-    throw Failure(
-        fmt::format("{} is in {}, but the ground, {}, in {}; reproject one of them, or take "
-                    "coordinates as they are",
-                    run_.name, gdal().crs_name(run_.crs), start.name, gdal().crs_name(ground)),
-        ErrorCode::kBadInput, {.file = run_.name, .remedy = Remedy::kForeignCrs});
   }
 
   BlockSink& deal() {

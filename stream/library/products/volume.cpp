@@ -22,6 +22,7 @@
 #include "stream/ground/overlay_cells.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/products/surface_units.h"
 #include "stream/sinks/simplex_sink.h"
 
 namespace spillway::stream {
@@ -90,10 +91,7 @@ class SurfaceWriter final : public SimplexSink<WorldPoint> {
 
 void check(const VolumeOptions& options) {
   check_max_edge(options.max_edge);
-  if (options.z_factor && !(*options.z_factor > 0 && std::isfinite(*options.z_factor))) {
-    throw InvalidArgument(
-        fmt::format("heights are multiplied by a number above 0, not by {}", *options.z_factor));
-  }
+  check_z_factor(options.z_factor);
 }
 
 /// What brings heights to the unit of x and y. Throws Failure for longitude and latitude.
@@ -107,9 +105,8 @@ double z_factor_of(const MeshStart& start, const VolumeOptions& options, const C
                   ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kForeignCrs});
   }
   if (options.z_factor) return *options.z_factor;
-  constexpr double kRounding = 1e-9;  // the two feet differ by 2e-6
-  const double factor = units.vertical / units.horizontal;
-  if (units.is_geographic || !(factor > 0) || std::abs(factor - 1) <= kRounding) return 1;
+  const double factor = units.is_geographic ? 1 : z_factor_by(units);
+  if (factor == 1) return 1;
   if (context.options().detail) {
     context.options().detail(fmt::format("{}: heights are multiplied by {:.12g}",
                                          gdal().crs_name(start.header.crs), factor));
@@ -320,15 +317,10 @@ class BetweenTwo final : public VolumeBetween {
                       start.name),
           ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kGroundScale});
     }
-    if (first_.crs().empty() || crs == first_.crs() || options_.foreign_crs ||
-        gdal().same_crs(crs, first_.crs())) {
-      return factor;
+    if (!options_.foreign_crs) {
+      check_same_crs("the first surface", first_.crs(), start.name, crs, start.name);
     }
-    throw Failure(
-        fmt::format("the first surface is in {}, but {} in {}; reproject one of them, or take "
-                    "coordinates as they are",
-                    gdal().crs_name(first_.crs()), start.name, gdal().crs_name(crs)),
-        ErrorCode::kBadInput, {.file = start.name, .remedy = Remedy::kForeignCrs});
+    return factor;
   }
 
   const Context context_;
