@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,6 +140,20 @@ void bind_triangulate_options(py::module_& module) {
   bind_choice(bound, "kernel", &TriangulateOptions::kernel, {"spillway", "cgal"});
 }
 
+/// The names of the traits that any of the products has.
+std::set<std::string> traits_of_any(const DemOptions& options) {
+  std::set<std::string> names;
+  for (const DemProduct product : options.products) {
+    const DemProductTraits traits = traits_of(product);
+    if (traits.of_neighbours) names.insert("of_neighbours");
+    if (traits.by_gradient) names.insert("by_gradient");
+    if (traits.by_ground) names.insert("by_ground");
+    if (traits.by_azimuth) names.insert("by_azimuth");
+    if (traits.by_altitude) names.insert("by_altitude");
+  }
+  return names;
+}
+
 void bind_product_options(py::module_& module) {
   py::class_<DemOptions> dem(module, "DemOptions");
   dem.def(py::init())
@@ -169,6 +184,7 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("altitude", &DemOptions::altitude)
       .def_readwrite("z_factor", &DemOptions::z_factor)
       .def_readwrite("max_edge", &DemOptions::max_edge)
+      .def_property_readonly("traits", traits_of_any)
       .def_readwrite("nodata", &DemOptions::nodata)
       .def_readwrite("compress", &DemOptions::compression)
       .def_readwrite("cog", &DemOptions::cloud_optimized);

@@ -196,7 +196,7 @@ def dem(
         "gradient": gradient,
         "compute_edges": compute_edges,
     }
-    _check_products(products, surface, options)
+    _check_products(how, surface, options)
     if like is None:
         if resolution is None:
             raise InvalidArgumentError("resolution, the side of a pixel, is missing (or like)")
@@ -431,33 +431,22 @@ def _put_products(target: _spillway.DemOptions, value: str | Sequence[str]) -> N
     target.products = [value] if isinstance(value, str) else list(value)
 
 
-_GRADIENTS = {"slope", "aspect", "hillshade", "multi-hillshade"}
-_CURVATURES = {"curvature", "profile-curvature", "plan-curvature"}
-_FACETS = {"facet-slope", "facet-aspect", "facet-hillshade"}
+# What products must depend on for an option to make a difference (spillway::DemProductTraits).
+_TRAIT_OF_OPTION = {
+    "azimuth": ("by_azimuth", "hillshade"),
+    "altitude": ("by_altitude", "hillshade"),
+    "z_factor": ("by_ground", "slope, aspect, hillshade or curvature"),
+    "gradient": ("by_gradient", "slope, aspect or hillshade"),
+    "compute_edges": ("of_neighbours", "slope or another product of a pixel's neighbours"),
+}
 
 
-def _check_products(products: list[str], surface: dict[str, Any], options: Any) -> None:
+def _check_products(how: _spillway.DemOptions, surface: dict[str, Any], options: Any) -> None:
     """Refuse options that make no difference to the products."""
-    made = set(products)
-    if not {"hillshade", "facet-hillshade"} & made:
-        refuse(surface, ["azimuth"], "without hillshade among the products")
-    if not {"hillshade", "facet-hillshade", "multi-hillshade"} & made:
-        refuse(surface, ["altitude"], "without hillshade among the products")
-    if not (_GRADIENTS | _CURVATURES | _FACETS) & made:
-        refuse(
-            surface,
-            ["z_factor"],
-            "without slope, aspect, hillshade or curvature among the products",
-        )
-    if not _GRADIENTS & made:
-        refuse(surface, ["gradient"], "without slope, aspect or hillshade among the products")
-    if made <= _FACETS | {"height", "density"}:
-        refuse(
-            surface,
-            ["compute_edges"],
-            "without a product of a pixel's neighbours, like slope",
-        )
-    if products == ["density"]:
+    for name, (trait, products) in _TRAIT_OF_OPTION.items():
+        if trait not in how.traits:
+            refuse(surface, [name], f"without {products} among the products")
+    if how.products == ["density"]:
         refuse(options, ["heights", "max_edge"], "on density, which counts vertices")
 
 

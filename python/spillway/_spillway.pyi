@@ -114,6 +114,8 @@ class TriangulateOptions:
 
 class DemOptions:
     products: list[str]
+    @property
+    def traits(self) -> set[str]: ...
     resolution: float
     bounds: tuple[float, float, float, float] | None
     align: bool
