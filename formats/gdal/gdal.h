@@ -91,6 +91,12 @@ class Gdal {
   [[nodiscard]] virtual std::unique_ptr<Raster> create_raster(
       const RasterOptions& options) const = 0;
 
+  /// The text of a VRT that puts rasters of the same bands together, which are at absolute paths,
+  /// for a file at the absolute `path`. It covers `place`.
+  [[nodiscard]] virtual std::string mosaic_text(const std::vector<std::string>& rasters,
+                                                const PixelGrid& place,
+                                                const std::string& path) const = 0;
+
   /// Where an existing raster lies. Throws Failure if its pixels are not square, north up.
   [[nodiscard]] virtual RasterGrid read_raster_grid(const std::string& path) const = 0;
 };

@@ -52,6 +52,13 @@ struct DemOptions {
   PixelType type = PixelType::kFloat32;  ///< bytes are for shades
   std::string compression = "deflate";   ///< or "zstd", "none"
   bool cloud_optimized = false;          ///< with overviews
+  /// Above 0: the raster is cut into a file for each square of this side, in units of x and y, whose
+  /// edges lie on multiples of it; in the path "{x}" and "{y}" stand for its south-western corner.
+  /// Pixels are aligned. Files have the pixels of the raster as they are, and there is none for a
+  /// square without data. Of points that are triangulated, most get their names during the run.
+  double tile_side = 0;
+  /// A VRT that puts tiles together; empty: the path without "{x}" and "{y}", with .vrt at its end.
+  std::string vrt{};
 };
 
 /// What became of a raster.
@@ -63,7 +70,13 @@ struct DemReport {
   double north = 0;
   std::vector<std::string> bands{};
   std::uint64_t pixels_with_data = 0;  ///< of the first band
-  std::uint64_t closed_tiles = 0;      ///< of 256 x 256 pixels, complete before all triangles came
+  std::uint64_t files = 1;             ///< written, beside the VRT
+  std::uint64_t files_during_run = 0;  ///< of these, complete before all triangles came
+  std::uint64_t empty_tiles = 0;       ///< without data, which have no file
+  std::string vrt{};                   ///< empty: none
+  /// Files of other tiles that an earlier run may have left beside these.
+  std::vector<std::string> other_files{};
+  std::uint64_t closed_tiles = 0;  ///< of 256 x 256 pixels, complete before all triangles came
   std::uint64_t spilled_bytes = 0;
 };
 
@@ -75,8 +88,8 @@ class SPILLWAY_API DemSink : public MeshSink {
   [[nodiscard]] virtual const DemReport& report() const = 0;
 };
 
-/// A GeoTIFF, interpolated linearly within the triangles. It gets its name when it
-/// is complete. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
+/// A GeoTIFF, or one for each tile, interpolated linearly within the triangles. It gets its name when
+/// it is complete: tiles that are so stay if the run fails later. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
 /// options that cannot be, kOutOfBudget for a memory limit below 64 MiB, kInputOutput; begin()
 /// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, and kTooLarge
 /// for a raster that is large because of points far away.

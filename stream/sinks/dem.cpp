@@ -122,28 +122,71 @@ Box<2> Dem::in_output(const Box<2>& extent) const {
 void Dem::begin(const Box<2>& extent) { begin(choose_grid(options_.grid, in_output(extent))); }
 
 void Dem::begin(const PixelGrid& grid) {
-  grid_ = grid;
-  tiles_ = TileLayout(grid_, has_neighbours(options_.products));
+  const std::vector<PixelWindow> windows =
+      options_.sheets ? options_.sheets(grid)
+                      : std::vector<PixelWindow>{{0, grid.rows, 0, grid.columns}};
+  sheets_ = RasterSheets(grid, windows, has_neighbours(options_.products));
   const std::uint64_t bands = std::max(options_.products.size(), layers_.size());
-  const std::uint64_t index =
-      PixelCentres::bytes(grid_) + tiles_.count() * kIndexBytes * bands + DemOutput::bytes(tiles_);
+  std::uint64_t output = 0;
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    output = std::max(output, DemOutput::bytes(sheets_[s]));
+  }
+  const std::uint64_t index = PixelCentres::bytes(grid) +
+                              sheets_.stored_tiles() * kIndexBytes * bands + output +
+                              sheets_.bytes();
   if (index > options_.memory / 2) {
     throw TooSmallLimit(fmt::format("a raster of {} x {} pixels needs {} for its index alone",
-                                    grid_.columns, grid_.rows, memory_size_text(index)),
+                                    grid.columns, grid.rows, memory_size_text(index)),
                         {.remedy = Remedy::kRasterMemory});
   }
-  centres_.emplace(grid_, on_lattice_ ? lattice_ : std::nullopt, tiles_.margin);
+  centres_.emplace(grid, on_lattice_ ? lattice_ : std::nullopt, sheets_.margin());
   std::vector<PixelRule> rules;
   for (const DemProduct product : layers_) rules.push_back(rule_of(product));
   RasterStore::PixelsOfTile wanted;
   if (closes_tiles()) {
     wanted = [this](std::uint64_t number) {
-      const auto [rows, columns] = tiles_.size(number - tiles_.ring_tiles());
-      return rows * columns;
+      return sheets_[sheets_.sheet_of_stored(number)].pixels_of_stored(number);
     };
   }
+  RasterStore::TileClosed closed;
+  std::uint64_t in_work = 0;
+  if (writes_early()) {
+    closed = [this](std::uint64_t number) { note_closed(number); };
+    in_work = DemOutput::kLeastSlots * DemOutput::slot_bytes(options_.products, layers_);
+  }
   left_out_ = 0;
-  store_.emplace(std::move(rules), options_.memory - index, scratch_, std::move(wanted));
+  states_ = std::vector<SheetState>(sheets_.size());
+  final_.clear();
+  store_.emplace(std::move(rules), options_.memory - std::min(options_.memory / 2, index + in_work),
+                 scratch_, std::move(wanted), std::move(closed));
+}
+
+void Dem::note_closed(std::uint64_t stored_tile) {
+  const std::size_t sheet = sheets_.sheet_of_stored(stored_tile);
+  if (++states_[sheet].closed < sheets_[sheet].stored_count()) return;
+  const std::lock_guard lock(final_mutex_);
+  final_.push_back(sheet);
+}
+
+/// Unless another thread is at it.
+void Dem::hand_on_final_sheets() {
+  std::unique_lock lock(final_mutex_);
+  if (is_handing_on_) return;
+  is_handing_on_ = true;
+  try {
+    while (!final_.empty()) {
+      const std::size_t sheet = final_.front();
+      final_.pop_front();
+      lock.unlock();
+      options_.sheet_is_final(sheet);
+      lock.lock();
+    }
+  } catch (...) {
+    if (!lock) lock.lock();
+    is_handing_on_ = false;
+    throw;
+  }
+  is_handing_on_ = false;
 }
 
 /// Vertices of a pixel may come after all triangles at its centre. Triangles that are mapped to
@@ -202,6 +245,7 @@ void Dem::paint(std::span<const PlacedPoint> vertices, std::span<const std::uint
     parallel_for(vertices.size(), kVerticesAtATime, find_windows);
     parallel_for(corners.size() / 3, kTrianglesAtATime, paint_some);
     for (const auto& [canonical, window] : large) paint_large(canonical, window);
+    if (writes_early()) hand_on_final_sheets();
   });
 }
 
@@ -216,8 +260,9 @@ Triangle Dem::in_output(const Triangle& placed) const {
 
 /// Paints a triangle of many tiles: each tile is held once, and many threads work on it.
 void Dem::paint_large(const Triangle& canonical, const PixelWindow& whole) {
-  const std::vector<Steps> down = tile_steps(whole.row_begin, whole.row_end, tiles_.margin);
-  const std::vector<Steps> across = tile_steps(whole.column_begin, whole.column_end, tiles_.margin);
+  const std::vector<Steps> down = tile_steps(whole.row_begin, whole.row_end, sheets_.margin());
+  const std::vector<Steps> across =
+      tile_steps(whole.column_begin, whole.column_end, sheets_.margin());
   parallel_for(
       across.size() * down.size(), 1,
       [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
@@ -254,35 +299,54 @@ Gradient Dem::on_ground(const TrianglePlane& plane, const Triangle& canonical) c
   return {gradient[0] * ground.height / lengths[0], gradient[1] * ground.height / lengths[1]};
 }
 
-/// Heights just beyond the raster's edges; what remains of the run is within.
-void Dem::paint_ring(PixelRun& run, const TrianglePlane& plane, Work& work) {
+/// Heights just beyond a sheet's edges; what remains of the run is within.
+void Dem::paint_ring(const TileLayout& tiles, PixelRun& run, const TrianglePlane& plane,
+                     Work& work) {
   const auto heights = std::ranges::find(layers_, DemProduct::kHeight) - layers_.begin();
+  const double y = centres_->y()[tiles.window.row_begin + run.row];
   const auto paint_one = [&](std::uint32_t column) {
-    const std::uint64_t pixel = tiles_.ring_pixel(run.row, column);
-    float* const tile = work.hand.tile(pixel / RasterStore::kTilePixels);
-    set_pixel(
-        tile[static_cast<std::size_t>(heights) * RasterStore::kTilePixels +
-             pixel % RasterStore::kTilePixels],
-        static_cast<float>(plane.at(run.relation, centres_->x()[column], centres_->y()[run.row])));
+    const std::uint64_t pixel = tiles.ring_pixel(run.row, column);
+    float* const tile = work.hand.tile(tiles.first + pixel / RasterStore::kTilePixels);
+    if (tile == nullptr) return;
+    if (run.owned) work.hand.decide(1);
+    set_pixel(tile[static_cast<std::size_t>(heights) * RasterStore::kTilePixels +
+                   pixel % RasterStore::kTilePixels],
+              static_cast<float>(
+                  plane.at(run.relation, centres_->x()[tiles.window.column_begin + column], y)));
   };
-  if (run.row == 0 || run.row > grid_.rows) {
+  if (run.row == 0 || run.row > tiles.rows) {
     for (; run.begin < run.end; ++run.begin) paint_one(run.begin);
     return;
   }
   if (run.begin == 0) paint_one(run.begin++);
-  if (run.end > grid_.columns + 1 && run.begin < run.end) paint_one(--run.end);
+  if (run.end > tiles.columns + 1 && run.begin < run.end) paint_one(--run.end);
 }
 
-void Dem::paint_run(PixelRun run, const TrianglePlane& plane, Work& work) {
-  if (tiles_.margin > 0) paint_ring(run, plane, work);
-  const double y = centres_->y()[run.row];
-  const std::span<const double> x = centres_->x();
-  const std::uint32_t row = run.row - tiles_.margin;
+void Dem::paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work) {
+  sheets_.visit(run.row, run.begin, run.end,
+                [&](std::size_t sheet, std::uint32_t begin, std::uint32_t end) {
+                  if (states_[sheet].written) return;
+                  const TileLayout& tiles = sheets_[sheet];
+                  PixelRun part = run;
+                  part.row -= tiles.window.row_begin;
+                  part.begin = begin - tiles.window.column_begin;
+                  part.end = end - tiles.window.column_begin;
+                  paint_sheet(tiles, part, plane, work);
+                });
+}
+
+/// Rows and columns of the run are those of the sheet, which begin with its ring.
+void Dem::paint_sheet(const TileLayout& tiles, PixelRun run, const TrianglePlane& plane,
+                      Work& work) {
+  if (tiles.margin > 0) paint_ring(tiles, run, plane, work);
+  const double y = centres_->y()[tiles.window.row_begin + run.row];
+  const std::span<const double> x = centres_->x().subspan(tiles.window.column_begin);
+  const std::uint32_t row = run.row - tiles.margin;
   for (std::uint32_t begin = run.begin; begin < run.end;) {
-    const std::uint32_t column = begin - tiles_.margin;
+    const std::uint32_t column = begin - tiles.margin;
     const std::uint32_t end =
-        std::min(run.end, (column / kRasterTile + 1) * kRasterTile + tiles_.margin);
-    float* pixels = work.hand.tile(tiles_.stored(tiles_.number(row, column)));
+        std::min(run.end, (column / kRasterTile + 1) * kRasterTile + tiles.margin);
+    float* pixels = work.hand.tile(tiles.stored(tiles.number(row, column)));
     if (pixels == nullptr) {
       begin = end;
       continue;
@@ -314,25 +378,37 @@ void Dem::count(std::span<const PlacedPoint> vertices) {
   const auto found = std::ranges::find(layers_, DemProduct::kDensity);
   if (found == layers_.end()) return;
   const auto band = static_cast<std::size_t>(found - layers_.begin());
+  const std::uint32_t margin = sheets_.margin();
   const auto count_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
     Work work(*store_, layers_.size());
     for (const PlacedPoint& vertex : vertices.subspan(begin, end - begin)) {
       const auto column =
-          column_of(grid_, on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
-      const auto row = row_of(grid_, on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
+          column_of(grid(), on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
+      const auto row = row_of(grid(), on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
       if (!column || !row) continue;
-      float* const pixels = work.hand.tile(tiles_.stored(tiles_.number(*row, *column)));
-      put_pixel(pixels[band * RasterStore::kTilePixels +
-                       std::size_t{*row % kRasterTile} * kRasterTile + *column % kRasterTile],
-                1, PixelRule::kSum, true);
+      sheets_.visit(*row + margin, *column + margin, *column + margin + 1,
+                    [&](std::size_t sheet, std::uint32_t, std::uint32_t) {
+                      const TileLayout& tiles = sheets_[sheet];
+                      const auto& [top, bottom, left, right] = tiles.window;
+                      if (*row < top || *row >= bottom || *column < left || *column >= right) {
+                        return;  // in its ring
+                      }
+                      const std::uint32_t r = *row - top;
+                      const std::uint32_t c = *column - left;
+                      float* const pixels = work.hand.tile(tiles.stored(tiles.number(r, c)));
+                      put_pixel(
+                          pixels[band * RasterStore::kTilePixels +
+                                 std::size_t{r % kRasterTile} * kRasterTile + c % kRasterTile],
+                          1, PixelRule::kSum, true);
+                    });
     }
   };
   isolated([&] { parallel_for(vertices.size(), kVerticesAtATime, count_some); });
 }
 
-RasterOptions Dem::raster_options() const {
+RasterOptions Dem::raster_options(std::size_t sheet) const {
   RasterOptions raster;
-  raster.grid.pixels = grid_;
+  raster.grid.pixels = sheets_.grid_of(sheet);
   for (const DemProduct product : options_.products) {
     raster.bands.push_back(dem_product_names()[static_cast<std::size_t>(product)]);
     // The mean of 359 and 1 is no direction.
@@ -349,26 +425,55 @@ RasterOptions Dem::raster_options() const {
 void Dem::save(StateWriter& state) {
   state.section("dem");
   bool begun = store_.has_value();
-  state(begun, grid_, left_out_);
-  if (begun) store_->save(state);
+  PixelGrid raster = grid();
+  state(begun, raster, left_out_);
+  if (!begun) return;
+  for (SheetState& sheet : states_) {
+    std::uint64_t closed = sheet.closed;
+    bool written = sheet.written;
+    state(closed, written, sheet.content.pixels_with_data, sheet.content.is_empty);
+  }
+  store_->save(state);
 }
 
 void Dem::restore(StateReader& state) {
   state.section("dem");
   bool begun = false;
-  PixelGrid grid;
+  PixelGrid raster;
   std::uint64_t left_out = 0;
-  state(begun, grid, left_out);
+  state(begun, raster, left_out);
   if (!begun) return;
-  begin(grid);
+  begin(raster);
   left_out_ = left_out;
+  for (std::size_t s = 0; s < states_.size(); ++s) {
+    std::uint64_t closed = 0;
+    bool written = false;
+    state(closed, written, states_[s].content.pixels_with_data, states_[s].content.is_empty);
+    states_[s].closed = closed;
+    states_[s].written = written;
+    if (writes_early() && !written && closed == sheets_[s].stored_count()) final_.push_back(s);
+  }
   store_->restore(state);
 }
 
-void Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-                const OtherTiles& others) {
-  DemOutput output(options_, layers_, tiles_, *store_);
-  pixels_with_data_ = output.write(raster, progress, others);
+SheetContent Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                        const OtherTiles& others, std::size_t sheet) {
+  SheetState& state = states_[sheet];
+  state.written = true;
+  // All painted, the pixels have twice their memory: the triangulation, which had more, is done.
+  const std::uint64_t slots =
+      writes_early() ? DemOutput::kLeastSlots
+                     : 2 * options_.memory / DemOutput::slot_bytes(options_.products, layers_);
+  DemOutput output(options_, layers_, sheets_[sheet], *store_,
+                   std::clamp<std::size_t>(slots, DemOutput::kLeastSlots, options_.threads + 2));
+  state.content = output.write(raster, progress, others);
+  return state.content;
+}
+
+std::uint64_t Dem::pixels_with_data() const {
+  std::uint64_t count = 0;
+  for (const SheetState& sheet : states_) count += sheet.content.pixels_with_data;
+  return count;
 }
 
 }  // namespace spillway::stream

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "src/terrain/pixel_values.h"
 #include "stream/sinks/dem_output.h"
 #include "stream/sinks/dem_sink_options.h"
+#include "stream/sinks/raster_sheets.h"
 #include "stream/sinks/raster_store.h"
 
 namespace spillway::stream {
@@ -48,14 +51,21 @@ class Dem {
   /// Counts vertices for the density. By any number of threads at once.
   void count(std::span<const PlacedPoint> vertices);
 
-  [[nodiscard]] const PixelGrid& grid() const { return grid_; }
-  [[nodiscard]] RasterOptions raster_options() const;
+  [[nodiscard]] const PixelGrid& grid() const { return sheets_.raster(); }
+  [[nodiscard]] const RasterSheets& sheets() const { return sheets_; }
+  [[nodiscard]] RasterOptions raster_options(std::size_t sheet = 0) const;
 
-  /// Writes all tiles, row by row, and forgets them. `progress` is told how many of the raster's
+  /// Writes all tiles of a sheet, row by row, and forgets them. `progress` is told how many of its
   /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
   /// which have painted other triangles, `others` gives what they have.
-  void write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-             const OtherTiles& others = nullptr);
+  SheetContent write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                     const OtherTiles& others = nullptr, std::size_t sheet = 0);
+  /// Whether write() has been called for it, here or before the Dem was saved.
+  [[nodiscard]] bool is_written(std::size_t sheet) const { return states_[sheet].written; }
+  /// What a sheet has that is written.
+  [[nodiscard]] const SheetContent& content(std::size_t sheet) const {
+    return states_[sheet].content;
+  }
 
   /// For another Dem of the same grid: the tiles that are not empty, in ascending order, and one of
   /// them, which is forgotten.
@@ -67,8 +77,8 @@ class Dem {
   void save(StateWriter& state);
   void restore(StateReader& state);
 
-  /// Pixels of the first band that have a value; after write().
-  [[nodiscard]] std::uint64_t pixels_with_data() const { return pixels_with_data_; }
+  /// Pixels of the first band that have a value, in all sheets that are written.
+  [[nodiscard]] std::uint64_t pixels_with_data() const;
   /// Triangles with too long an edge.
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
   [[nodiscard]] std::uint64_t spilled_bytes() const { return store_->spilled_bytes(); }
@@ -77,14 +87,24 @@ class Dem {
 
  private:
   struct Work;
+  struct SheetState {
+    std::atomic<std::uint64_t> closed = 0;  ///< its stored tiles
+    std::atomic<bool> written = false;
+    SheetContent content{};
+  };
+
   [[nodiscard]] PlacedPoint placed(const LatticePoint& vertex) const;
   [[nodiscard]] Triangle in_output(const Triangle& placed) const;
   void paint_pixels(const Triangle& canonical, const PixelWindow& window, Work& work);
   [[nodiscard]] Gradient on_ground(const TrianglePlane& plane, const Triangle& canonical) const;
-  void paint_run(PixelRun run, const TrianglePlane& plane, Work& work);
-  void paint_ring(PixelRun& run, const TrianglePlane& plane, Work& work);
+  void paint_run(const PixelRun& run, const TrianglePlane& plane, Work& work);
+  void paint_sheet(const TileLayout& tiles, PixelRun run, const TrianglePlane& plane, Work& work);
+  void paint_ring(const TileLayout& tiles, PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
   [[nodiscard]] bool closes_tiles() const;
+  [[nodiscard]] bool writes_early() const { return closes_tiles() && options_.sheet_is_final; }
+  void note_closed(std::uint64_t stored_tile);
+  void hand_on_final_sheets();
 
   const DemSinkOptions options_;
   const std::vector<DemProduct> layers_;  ///< what is painted
@@ -92,11 +112,13 @@ class Dem {
   const bool on_lattice_;  ///< triangles are painted on it
   const Point<3> light_direction_;
   ScratchFolder& scratch_;
-  PixelGrid grid_;
-  TileLayout tiles_;
+  RasterSheets sheets_;
+  std::vector<SheetState> states_;
+  std::mutex final_mutex_;
+  std::deque<std::size_t> final_;  ///< sheets, not written yet; guarded by final_mutex_
+  bool is_handing_on_ = false;     ///< likewise
   std::optional<PixelCentres> centres_;
   std::optional<RasterStore> store_;
-  std::uint64_t pixels_with_data_ = 0;
   std::atomic<std::uint64_t> left_out_ = 0;
 };
 

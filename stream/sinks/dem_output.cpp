@@ -74,15 +74,16 @@ struct DemOutput::Slot {
   std::vector<float> layers;
   std::vector<float> framed;  ///< heights
   std::vector<float> bands;
-  std::uint64_t with_data = 0;
+  SheetContent content;
 };
 
 DemOutput::DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
-                     const TileLayout& tiles, RasterStore& store)
+                     const TileLayout& tiles, RasterStore& store, std::size_t slots)
     : options_(options),
       layers_(layers),
       tiles_(tiles),
       store_(store),
+      slots_(slots),
       light_direction_(direction_of(options.light)),
       multi_shade_(options.light.altitude) {
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
@@ -102,7 +103,8 @@ std::uint64_t DemOutput::bytes(const TileLayout& tiles) {
 void DemOutput::take_ring(const OtherTiles& others) {
   std::vector<float> layers;
   for (std::uint64_t tile = 0; tile < tiles_.ring_tiles(); ++tile) {
-    store_.take(tile, layers, others ? others(tile) : std::vector<std::vector<std::byte>>{});
+    const std::uint64_t number = tiles_.first + tile;
+    store_.take(number, layers, others ? others(number) : std::vector<std::vector<std::byte>>{});
     std::ranges::copy(band_of(layers, heights_), std::back_inserter(ring_));
   }
 }
@@ -126,25 +128,23 @@ void DemOutput::add_ring(std::uint64_t tile, std::span<float> framed) const {
   }
 }
 
-/// As many as twice the memory of pixels holds: the triangulation, which had more, is done. Two of
-/// them in any case, so that one is made while another is written.
-std::size_t DemOutput::slots() const {
-  const std::size_t bands = layers_.size() + (derived_.empty() ? 0 : options_.products.size() + 1);
-  const std::uint64_t bytes = bands * RasterStore::kTilePixels * sizeof(float);
-  return std::clamp<std::size_t>(2 * options_.memory / bytes, 2, options_.threads + 2);
+std::uint64_t DemOutput::slot_bytes(const std::vector<DemProduct>& products,
+                                    const std::vector<DemProduct>& layers) {
+  const std::size_t bands = layers.size() + (has_neighbours(products) ? products.size() + 1 : 0);
+  return bands * RasterStore::kTilePixels * sizeof(float);
 }
 
-std::uint64_t DemOutput::write(Raster& raster,
-                               const std::function<void(std::uint64_t pixels)>& progress,
-                               const OtherTiles& others) {
+SheetContent DemOutput::write(Raster& raster,
+                              const std::function<void(std::uint64_t pixels)>& progress,
+                              const OtherTiles& others) {
   const std::uint64_t tiles = tiles_.count();
   const std::uint64_t delay = derived_.empty() ? 0 : TileEdges::delay(tiles_);
-  std::vector<Slot> in_work(slots());
+  std::vector<Slot> in_work(slots_);
   TileEdges edges(tiles_);
   take_ring(others);
   std::uint64_t next = 0;
   std::uint64_t done = 0;
-  std::uint64_t with_data = 0;
+  SheetContent content;
   const auto source = [&](std::size_t s) {
     if (next == tiles + delay) return false;
     Slot& slot = in_work[s];
@@ -182,7 +182,8 @@ std::uint64_t DemOutput::write(Raster& raster,
     }
     const auto [rows, columns] = tiles_.size(tile);
     done += std::uint64_t{rows} * columns;
-    with_data += slot.with_data;
+    content.pixels_with_data += slot.content.pixels_with_data;
+    content.is_empty = content.is_empty && slot.content.is_empty;
     progress(done);
   };
   std::vector<PipelineStep> steps = {{.in_order = false, .work = take}};
@@ -190,7 +191,7 @@ std::uint64_t DemOutput::write(Raster& raster,
   steps.push_back({.in_order = false, .work = make});
   steps.push_back({.in_order = true, .work = write_tile});
   run_pipeline(in_work.size(), source, steps);
-  return with_data;
+  return content;
 }
 
 void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
@@ -211,22 +212,30 @@ void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
     finish_band(options_.products[b], size, band_of(slot.bands, b));
   }
-  slot.with_data = 0;
-  const auto first = band_of(slot.bands, 0);
-  for (std::uint32_t row = 0; row < size.rows; ++row) {
-    const auto pixels = first.subspan(std::size_t{row} * kRasterTile, size.columns);
-    slot.with_data += static_cast<std::uint64_t>(std::ranges::count_if(pixels, [&](float pixel) {
-      return std::isnan(options_.nodata) ? !std::isnan(pixel) : pixel != options_.nodata;
-    }));
+  const auto pixels_with_data = [&](std::size_t b) {
+    std::uint64_t count = 0;
+    for (std::uint32_t row = 0; row < size.rows; ++row) {
+      const auto pixels =
+          band_of(slot.bands, b).subspan(std::size_t{row} * kRasterTile, size.columns);
+      count += static_cast<std::uint64_t>(std::ranges::count_if(pixels, [&](float pixel) {
+        return std::isnan(options_.nodata) ? !std::isnan(pixel) : pixel != options_.nodata;
+      }));
+    }
+    return count;
+  };
+  slot.content.pixels_with_data = pixels_with_data(0);
+  slot.content.is_empty = slot.content.pixels_with_data == 0;
+  for (std::size_t b = 1; b < options_.products.size() && slot.content.is_empty; ++b) {
+    slot.content.is_empty = pixels_with_data(b) == 0;
   }
 }
 
 /// Products of neighbours.
 void DemOutput::derive(std::uint64_t tile, Slot& slot) const {
   const auto [rows, columns] = tiles_.size(tile);
-  const PixelGrid& grid = tiles_.grid;
-  const std::uint32_t first_row = tiles_.row(tile) * kRasterTile;
-  const std::uint32_t first_column = tiles_.column(tile) * kRasterTile;
+  const PixelGrid& grid = tiles_.whole;
+  const std::uint32_t first_row = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
+  const std::uint32_t first_column = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
   for (std::uint32_t row = 0; row < rows; ++row) {
     const Point<2> lengths = lengths_at(options_.ground, grid.centre_y(first_row + row));
     const Point<2> sides = {lengths[0] * grid.resolution, lengths[1] * grid.resolution};

@@ -26,20 +26,32 @@ bool has_neighbours(const std::vector<DemProduct>& products);
 /// What another raster of the same grid has of a tile; called tile by tile, in order.
 using OtherTiles = std::function<std::vector<std::vector<std::byte>>(std::uint64_t tile)>;
 
+/// What a sheet has.
+struct SheetContent {
+  std::uint64_t pixels_with_data = 0;  ///< of the first band
+  bool is_empty = true;                ///< no pixel of any band has a value
+};
+
 /// Makes bands of layers, tile by tile. Where products depend on neighbours, tiles are taken from
 /// the store a row ahead for the heights at their edges, and put back.
 class DemOutput {
  public:
-  /// All of them must outlive it.
+  /// All of them must outlive it. It has so many tiles in work at a time.
   DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
-            const TileLayout& tiles, RasterStore& store);
+            const TileLayout& tiles, RasterStore& store, std::size_t slots);
+
+  /// The least number of tiles in work, so that one is made while another is written.
+  static constexpr std::size_t kLeastSlots = 2;
+  /// What a tile in work takes, in bytes.
+  static std::uint64_t slot_bytes(const std::vector<DemProduct>& products,
+                                  const std::vector<DemProduct>& layers);
 
   /// What it needs besides tiles of pixels, in bytes.
   static std::uint64_t bytes(const TileLayout& tiles);
 
-  /// As Dem::write(). Returns the pixels of the first band that have a value.
-  std::uint64_t write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-                      const OtherTiles& others);
+  /// As Dem::write().
+  SheetContent write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
+                     const OtherTiles& others);
 
  private:
   struct Slot;
@@ -48,7 +60,6 @@ class DemOutput {
     std::size_t band;
   };
 
-  [[nodiscard]] std::size_t slots() const;
   void take_ring(const OtherTiles& others);
   void make_bands(std::uint64_t tile, Slot& slot) const;
   void add_ring(std::uint64_t tile, std::span<float> framed) const;
@@ -61,6 +72,7 @@ class DemOutput {
   const std::vector<DemProduct>& layers_;
   const TileLayout& tiles_;
   RasterStore& store_;
+  const std::size_t slots_;
   std::vector<Derived> derived_;
   std::size_t heights_ = 0;  ///< their layer, if anything is derived
   std::vector<float> ring_;  ///< heights

@@ -1,5 +1,8 @@
 #include "stream/sinks/dem_shares.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,16 +56,15 @@ void give_tiles(Dem& dem, ShareSender& sender) {
   if (!message.bytes().empty()) sender.send(message.take());
 }
 
-void write_with_others(Dem& dem, OtherShares& others, Raster& raster,
-                       const std::function<void(std::uint64_t pixels)>& progress) {
-  if (others.count() == 0) return dem.write(raster, progress);
-  std::vector<TilesOfOther> inboxes;
-  for (std::size_t other = 0; other < others.count(); ++other) inboxes.emplace_back(others, other);
-  dem.write(raster, progress, [&](std::uint64_t tile) {
+OtherTiles tiles_of_others(OtherShares& others) {
+  if (others.count() == 0) return nullptr;
+  const auto inboxes = std::make_shared<std::vector<TilesOfOther>>();
+  for (std::size_t other = 0; other < others.count(); ++other) inboxes->emplace_back(others, other);
+  return [inboxes](std::uint64_t tile) {
     std::vector<std::vector<std::byte>> of_others;
-    for (TilesOfOther& inbox : inboxes) inbox.take(tile, of_others);
+    for (TilesOfOther& inbox : *inboxes) inbox.take(tile, of_others);
     return of_others;
-  });
+  };
 }
 
 }  // namespace spillway::stream

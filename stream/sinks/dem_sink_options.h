@@ -3,6 +3,7 @@
 
 #include <spillway/dem.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,6 +30,11 @@ struct DemSinkOptions {
   /// A tile of pixels is closed as soon as each has been painted by the triangle that owns it. For
   /// triangles that do not overlap, all of which are painted here.
   bool closes_tiles = false;
+  /// Where the sheets lie that the raster is cut into, once its grid is known. Nothing: one sheet.
+  std::function<std::vector<PixelWindow>(const PixelGrid& raster)> sheets{};
+  /// Told of a sheet of which no pixel changes any more, to be written while others are painted. One
+  /// at a time, by a thread that paints.
+  std::function<void(std::size_t sheet)> sheet_is_final{};
   /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
   /// order; by many threads. Those in whose box no pixel has its centre are passed over.
   std::function<void(const Triangle&)> outline{};

@@ -114,9 +114,35 @@ void put_pixel(float& pixel, float value, PixelRule rule, bool preferred) {
   }
 }
 
+/// While it exists, pixels of a tile are on their way, and the store is not locked.
+class RasterStore::Move {
+ public:
+  Move(RasterStore& store, Tile& tile, std::unique_lock<std::mutex>& lock)
+      : store_(store), tile_(tile), lock_(lock) {
+    ++tile_.moving;
+    lock_.unlock();
+  }
+  ~Move() {
+    lock_.lock();
+    --tile_.moving;
+    store_.moved_.notify_all();
+  }
+  Move(const Move&) = delete;
+  Move& operator=(const Move&) = delete;
+
+ private:
+  RasterStore& store_;
+  Tile& tile_;
+  std::unique_lock<std::mutex>& lock_;
+};
+
 RasterStore::RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch,
-                         PixelsOfTile wanted)
-    : bands_(std::move(bands)), memory_(memory), scratch_(scratch), wanted_(std::move(wanted)) {}
+                         PixelsOfTile wanted, TileClosed told)
+    : bands_(std::move(bands)),
+      memory_(memory),
+      scratch_(scratch),
+      wanted_(std::move(wanted)),
+      told_(std::move(told)) {}
 
 std::uint64_t RasterStore::least_memory(std::size_t bands, unsigned threads) {
   return bands * kTilePixels * sizeof(float) * (kTilesInHand * threads + kLeastIdleTiles);
@@ -169,17 +195,20 @@ float* RasterStore::hold(std::uint64_t number) {
 }
 
 void RasterStore::let_go(std::uint64_t number, std::uint32_t decided) {
-  const std::lock_guard lock(mutex_);
-  Tile& tile = tiles_[number];
-  tile.decided += decided;
-  if (--tile.hands > 0) return;
-  tile.closed = wanted_ && tile.decided > 0 && tile.decided == wanted_(number);
-  if (!tile.closed) {
-    tile.place = idle_.insert(idle_.end(), number);
-    return;
+  {
+    const std::lock_guard lock(mutex_);
+    Tile& tile = tiles_[number];
+    tile.decided += decided;
+    if (--tile.hands > 0) return;
+    tile.closed = wanted_ && tile.decided > 0 && tile.decided == wanted_(number);
+    if (!tile.closed) {
+      tile.place = idle_.insert(idle_.end(), number);
+      return;
+    }
+    closed_.push_back(number);
+    ++closed_tiles_;
   }
-  closed_.push_back(number);
-  ++closed_tiles_;
+  if (told_) told_(number);
 }
 
 /// For one more tile.
@@ -204,25 +233,33 @@ bool RasterStore::make_room(std::unique_lock<std::mutex>& lock) {
 void RasterStore::pack_closed(std::unique_lock<std::mutex>& lock) {
   const std::uint64_t number = closed_.front();
   closed_.pop_front();
-  std::vector<float> pixels = std::exchange(tiles_[number].pixels, {});
-  lock.unlock();
-  std::vector<std::byte> packed = encode(pixels, runs_of(pixels));
-  packed.shrink_to_fit();
-  pixels = {};
-  lock.lock();
+  const auto found = tiles_.find(number);
+  if (found == tiles_.end() || found->second.pixels.empty()) return;  // taken
+  Tile& tile = found->second;
+  std::vector<float> pixels = std::exchange(tile.pixels, {});
+  std::vector<std::byte> packed;
+  {
+    const Move move(*this, tile, lock);
+    packed = encode(pixels, runs_of(pixels));
+    packed.shrink_to_fit();
+    pixels = {};
+  }
   --in_memory_;
   packed_bytes_ += packed.size();
   packed_.push_back(number);
-  tiles_[number].packed = std::move(packed);
+  tile.packed = std::move(packed);
 }
 
 void RasterStore::write_packed(std::unique_lock<std::mutex>& lock) {
   const std::uint64_t number = packed_.front();
   packed_.pop_front();
-  const std::vector<std::byte> packed = std::exchange(tiles_[number].packed, {});
-  lock.unlock();
-  append_encoded(number, packed);
-  lock.lock();
+  const auto found = tiles_.find(number);
+  if (found == tiles_.end() || found->second.packed.empty()) return;  // taken
+  const std::vector<std::byte> packed = std::exchange(found->second.packed, {});
+  {
+    const Move move(*this, found->second, lock);
+    append_encoded(number, packed);
+  }
   packed_bytes_ -= packed.size();
 }
 
@@ -233,15 +270,16 @@ std::vector<float> RasterStore::empty_tile(std::unique_lock<std::mutex>& lock) {
     ++in_memory_;
     lock.unlock();
     pixels.assign(tile_floats(), kNothing);
+    lock.lock();
   } else {
     const std::uint64_t number = idle_.front();
     idle_.pop_front();
-    pixels = std::exchange(tiles_[number].pixels, {});
-    lock.unlock();
+    Tile& tile = tiles_[number];
+    pixels = std::exchange(tile.pixels, {});
+    const Move move(*this, tile, lock);
     append(number, pixels);
     std::fill(pixels.begin(), pixels.end(), kNothing);
   }
-  lock.lock();
   return pixels;
 }
 
@@ -268,12 +306,13 @@ void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels
   std::vector<SpilledPixels> spilled;
   std::vector<std::byte> packed;
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     const auto found = tiles_.find(number);
     if (found == tiles_.end()) {
       pixels.clear();
     } else {
       Tile& tile = found->second;
+      moved_.wait(lock, [&] { return tile.moving == 0; });
       if (!tile.pixels.empty()) {
         if (!tile.closed) idle_.erase(tile.place);
         --in_memory_;
@@ -282,7 +321,7 @@ void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels
       packed = std::move(tile.packed);
       packed_bytes_ -= packed.size();
       spilled = std::move(tile.spilled);
-      tiles_.erase(found);
+      tiles_.erase(number);
     }
   }
   if (pixels.empty()) pixels.assign(tile_floats(), kNothing);

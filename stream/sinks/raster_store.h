@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -58,10 +59,13 @@ class RasterStore {
   /// How many pixels of a tile are to be decided. By any thread.
   using PixelsOfTile = std::function<std::uint32_t(std::uint64_t number)>;
 
+  /// Told of a tile that is closed, by the thread that had it in hand last. Must not throw.
+  using TileClosed = std::function<void(std::uint64_t number)>;
+
   /// Tiles that fit in `memory` bytes are kept; those in hands are, in any case. Without `wanted`
   /// no tile is closed.
   RasterStore(std::vector<PixelRule> bands, std::uint64_t memory, ScratchFolder& scratch,
-              PixelsOfTile wanted = nullptr);
+              PixelsOfTile wanted = nullptr, TileClosed told = nullptr);
 
   /// The least memory that gives `threads` threads a hand and the store some room.
   static std::uint64_t least_memory(std::size_t bands, unsigned threads);
@@ -108,7 +112,7 @@ class RasterStore {
 
   /// Takes a tile out of the store, all pixels put together, also `others`, which take_tile() of
   /// stores like this one has given; nothing but not-a-number if it has none. When no hand holds
-  /// it. May be called by many threads.
+  /// it, and while others may be painted. May be called by many threads.
   void take(std::uint64_t number, std::vector<float>& pixels,
             std::span<const std::vector<std::byte>> others = {});
 
@@ -140,6 +144,7 @@ class RasterStore {
     unsigned hands = 0;
     std::uint32_t decided = 0;  ///< pixels
     bool closed = false;
+    unsigned moving = 0;  ///< threads that pack its pixels, or write them to the disk
     std::list<std::uint64_t>::iterator place;  ///< in idle_, while in memory, open and in no hand
     std::vector<std::byte> packed;             ///< of a closed tile, while in memory
     std::vector<SpilledPixels> spilled;        ///< on the disk
@@ -158,6 +163,8 @@ class RasterStore {
       state(number, decided, closed, packed, spilled);
     }
   };
+
+  class Move;
 
   float* hold(std::uint64_t number);
   void let_go(std::uint64_t number, std::uint32_t decided);
@@ -179,11 +186,13 @@ class RasterStore {
   const std::uint64_t memory_;
   ScratchFolder& scratch_;
   const PixelsOfTile wanted_;
-  mutable std::mutex mutex_;  ///< guards the next seven
+  const TileClosed told_;
+  mutable std::mutex mutex_;       ///< guards the next seven
+  std::condition_variable moved_;  ///< pixels of a tile
   std::unordered_map<std::uint64_t, Tile> tiles_;
   std::list<std::uint64_t> idle_;     ///< in memory, open, in no hand; the longest unused first
-  std::deque<std::uint64_t> closed_;  ///< in memory as they are
-  std::deque<std::uint64_t> packed_;  ///< in memory
+  std::deque<std::uint64_t> closed_;  ///< in memory as they are, or taken meanwhile
+  std::deque<std::uint64_t> packed_;  ///< in memory, or taken meanwhile
   std::size_t in_memory_ = 0;         ///< tiles as they are
   std::uint64_t packed_bytes_ = 0;
   std::uint64_t closed_tiles_ = 0;

@@ -29,6 +29,7 @@ constexpr const char* kExamples =
     "  spillway dem survey.las -o relief.tif --resolution 1 --product height,slope,hillshade\n"
     "  spillway dem survey.las -o canopy.tif --resolution 1 --product chm --ground-class 2\n"
     "  spillway dem after.las -o after.tif --like before.tif\n"
+    "  spillway dem 'tiles/*.laz' -o 'dtm_{x}_{y}.tif' --resolution 0.5 --tiles 1000\n"
     "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
     "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
 
@@ -63,6 +64,22 @@ std::string why_empty(const DemCommandOptions& options, const DemReport& raster)
       like ? "" : " or a smaller --resolution");
 }
 
+void say_tiles(const DemCommandOptions& options, const DemReport& raster, ProgressLine& progress) {
+  constexpr std::size_t kMostNamed = 3;
+  progress.say(fmt::format(
+      "{} tiles{}{}, {} of them before the end of the triangulation", raster.files,
+      raster.empty_tiles == 0 ? "" : fmt::format(" and {} without data", raster.empty_tiles),
+      raster.vrt.empty() ? "" : fmt::format(", put together by {}", raster.vrt),
+      raster.files_during_run));
+  std::vector<std::string> others = raster.other_files;
+  if (others.empty()) return;
+  const std::size_t more = others.size() - std::min(others.size(), kMostNamed);
+  others.resize(others.size() - more);
+  progress.insist(fmt::format(
+      "warning: {}{} are called like tiles of {}, but this run has not written them",
+      fmt::join(others, ", "), more == 0 ? "" : fmt::format(" and {} more", more), options.output));
+}
+
 void say(const DemCommandOptions& options, const Report& report, const DemReport& raster,
          const RunFacts& facts, ProgressLine& progress) {
   say_what_is_left_out(options, report, progress);
@@ -73,6 +90,7 @@ void say(const DemCommandOptions& options, const Report& report, const DemReport
   if (raster.pixels_with_data == 0) {
     progress.insist("warning: no pixel has a value: " + why_empty(options, raster));
   }
+  if (!options.tiles.empty()) say_tiles(options, raster, progress);
   progress.say(
       fmt::format("{} vertices, {} triangles; {} x {} pixels of {}, {} with data, {:.2f} s",
                   report.mesh.vertices, report.mesh.simplices, raster.columns, raster.rows,
@@ -87,6 +105,10 @@ Json raster_json(const DemReport& raster) {
           {"north", raster.north},
           {"bands", raster.bands},
           {"pixels_with_data", raster.pixels_with_data},
+          {"files", raster.files},
+          {"files_during_run", raster.files_during_run},
+          {"empty_tiles", raster.empty_tiles},
+          {"vrt", raster.vrt},
           {"closed_tiles", raster.closed_tiles},
           {"spilled_bytes", raster.spilled_bytes}};
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -98,6 +99,22 @@ void check_products(const DemCommandOptions& options, const std::vector<DemProdu
   }
 }
 
+/// Which files there are to be.
+void set_tiles(const DemCommandOptions& options, DemOptions& dem) {
+  const std::filesystem::path name = std::filesystem::path(options.output).filename();
+  if (options.tiles.empty()) {
+    refuse_given(*options.app, {"--vrt"}, "without --tiles, which a VRT puts together");
+    if (name.string().find("{x}") != std::string::npos) {
+      throw UsageError(
+          fmt::format("{}: {{x}} in a name is for tiles; give --tiles SIDE, too", options.output));
+    }
+    return;
+  }
+  refuse_given(*options.app, {"--align"}, "with --tiles, which aligns pixels");
+  dem.tile_side = parse_resolution(options.tiles);
+  dem.vrt = options.vrt;
+}
+
 Extent parse_raster_bounds(const std::string& text) {
   const Extent box = parse_bounds(text);
   if (std::isfinite(box.low[2]) || !(box.low[0] < box.high[0] && box.low[1] < box.high[1])) {
@@ -109,7 +126,10 @@ Extent parse_raster_bounds(const std::string& text) {
 }  // namespace
 
 void add_dem_options(CommandLine& app, DemCommandOptions& options) {
-  app.add_option("-o,--output", options.output, "GeoTIFF file").required().value_name("FILE");
+  app.add_option("-o,--output", options.output,
+                 "GeoTIFF file; of tiles, with {x} and {y} in its name")
+      .required()
+      .value_name("FILE");
   add_terrain_options(app, options);
   // These are filters of points there; here they say what the raster is like.
   app.remove_option("--bounds");
@@ -140,6 +160,14 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .group(group)
       // Its coordinate system is compared with that of a mesh, too.
       .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
+  take_parsed(app.add_option("--tiles", options.tiles,
+                             "Cut the raster into files of this side, in units of x and y"),
+              parse_resolution)
+      .value_name("SIDE")
+      .group(group);
+  app.add_option("--vrt", options.vrt, "Of tiles, what puts them together [-o, without x and y]")
+      .value_name("FILE")
+      .group(group);
   take_parsed(app.add_option("--product", options.products,
                              fmt::format("{}; several, with commas, become bands; or {}, heights "
                                          "above the ground",
@@ -229,6 +257,7 @@ DemOptions dem_options(const DemCommandOptions& options) {
   dem.nodata = parse_nodata(options.nodata);
   dem.compression = options.compression;
   dem.cloud_optimized = options.cloud_optimized;
+  set_tiles(options, dem);
   return dem;
 }
 

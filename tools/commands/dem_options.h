@@ -19,6 +19,8 @@ struct DemCommandOptions : TerrainOptions {
   bool align = false;
   bool force_size = false;
   std::string like;
+  std::string tiles;
+  std::string vrt;
   std::string products = "height";
   std::string ground_class;
   std::string gradient = "horn";

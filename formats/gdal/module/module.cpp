@@ -13,6 +13,7 @@
 #include "formats/gdal/module/crs_units.h"
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/module/geotiff.h"
+#include "formats/gdal/module/mosaic.h"
 #include "formats/gdal/module/geotiff_crs.h"
 #include "formats/gdal/vector_drivers.h"
 
@@ -84,6 +85,11 @@ class LoadedGdal : public Gdal {
   }
   [[nodiscard]] std::unique_ptr<Raster> create_raster(const RasterOptions& options) const override {
     return create_geotiff(options);
+  }
+  [[nodiscard]] std::string mosaic_text(const std::vector<std::string>& rasters,
+                                        const PixelGrid& place,
+                                        const std::string& path) const override {
+    return spillway::formats::mosaic_text(rasters, place, path);
   }
   [[nodiscard]] RasterGrid read_raster_grid(const std::string& path) const override {
     return read_geotiff_grid(path);

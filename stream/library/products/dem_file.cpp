@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <set>
+#include <span>
 #include <string_view>
+#include <system_error>
 
 #include "formats/disk/output_check.h"
 #include "formats/gdal/gdal.h"
@@ -148,7 +151,22 @@ DemFile::DemFile(const std::string& path, const DemOptions& options, const Conte
   check_path(path_);
   check_type(options_);
   if (options_.type == PixelType::kByte) dem_options_.nodata = 0;
-  if (is_first_process(context)) check_can_create(disk(), path_);
+  if (options_.tile_side != 0) {
+    tiles_.emplace(path_, options_.tile_side);
+    dem_options_.grid.align = true;
+    dem_options_.sheets = [this](const PixelGrid& raster) { return tiles_->windows(raster); };
+    dem_options_.sheet_is_final = [this](std::size_t sheet) {
+      write_sheet(
+          sheet, [](std::uint64_t) {}, nullptr);
+    };
+    if (options_.vrt.empty()) options_.vrt = tiles_->vrt_path();
+  } else if (!options_.vrt.empty()) {
+    throw InvalidArgument("a VRT puts tiles together, and none are asked for");
+  }
+  if (is_first_process(context)) {
+    check_can_create(disk(), path_);
+    if (tiles_) check_can_create(disk(), options_.vrt);
+  }
 }
 
 DemFile::DemFile(DemPixels& pixels, const DemOptions& options, const Context& context)
@@ -223,6 +241,7 @@ void DemFile::identify(RunIdentity& identity) const {
   add("altitude", options_.altitude);
   add("gradient", options_.gradient == GradientMethod::kHorn ? "Horn" : "Zevenbergen-Thorne");
   add("values at edges", options_.compute_edges);
+  add("side of tiles", options_.tile_side);
   add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
 }
 
@@ -250,6 +269,10 @@ bool DemFile::extent_told(const Box<2>& extent, std::uint64_t vertices) {
 bool DemFile::extent_holds(const Box<2>& extent) { return grid_of(extent) == dem_->grid(); }
 
 BlockSink* DemFile::begin_again() {
+  for (const std::string& file : written_files()) {  // of another grid
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
   if (!wants_extent()) dem_->begin(Box<2>{});
   return &writer_.emplace(*dem_);
 }
@@ -354,31 +377,67 @@ void DemFile::give_share(ShareSender& sender) {
   with_threads(dem_options_.threads, [&] { give_tiles(*dem_, sender); });
 }
 
+std::string DemFile::path_of(std::size_t sheet) const {
+  return tiles_ ? tiles_->path(dem_->grid(), dem_->sheets()[sheet].window) : path_;
+}
+
+/// Those of tiles, which may be there before all is.
+std::vector<std::string> DemFile::written_files() const {
+  std::vector<std::string> files;
+  for (std::size_t s = 0; dem_ && s < dem_->sheets().size(); ++s) {
+    if (tiles_ && dem_->is_written(s) && !dem_->content(s).is_empty) files.push_back(path_of(s));
+  }
+  return files;
+}
+
+/// A tile without data has no file.
+void DemFile::write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others) {
+  constexpr std::uint64_t kShareForOverviews = 4;
+  RasterOptions raster = file_options(path_of(sheet), options_, dem_->raster_options(sheet));
+  raster.grid.crs = crs_;
+  if (tiles_) raster.memory /= kShareForOverviews;  // pixels of other tiles are there
+  RasterFile file(std::move(raster));
+  const SheetContent content = dem_->write(file.raster(), progress, others, sheet);
+  if (!tiles_ || !content.is_empty) file.finish();
+}
+
+void DemFile::write_vrt(const std::vector<std::string>& files) {
+  if (files.empty()) return;
+  std::vector<std::string> absolute;
+  for (const std::string& file : files) absolute.push_back(std::filesystem::absolute(file));
+  const std::string text =
+      gdal().mosaic_text(absolute, dem_->grid(), std::filesystem::absolute(options_.vrt));
+  const auto output = disk().create(options_.vrt);
+  output->write(std::as_bytes(std::span(text)));
+  output->commit();
+  report_.vrt = options_.vrt;
+}
+
 void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
   Dem& dem = *dem_;
   const PixelGrid& grid = dem.grid();
-  RasterOptions raster = file_options(path_, options_, dem.raster_options());
-  raster.grid.crs = crs_;
+  const OtherTiles of_others = tiles_of_others(others);
   watch.begin("write", "pixels");
   const std::uint64_t pixels = std::uint64_t{grid.columns} * grid.rows;
-  const auto written = [&](std::uint64_t done) {
-    watch.tell(done, static_cast<double>(done) / static_cast<double>(pixels));
+  const std::uint64_t early = written_files().size();
+  std::uint64_t before = 0;
+  const Progress progress = [&](std::uint64_t done) {
+    watch.tell(before + done, static_cast<double>(before + done) / static_cast<double>(pixels));
   };
-  const auto write_to = [&](Raster& to) {
-    with_threads(dem_options_.threads, [&] { write_with_others(dem, others, to, written); });
-  };
-  if (pixels_ != nullptr) {
-    PixelsInMemory to(raster, *pixels_);
-    write_to(to);
-  } else {
-    RasterFile file(std::move(raster));
-    write_to(file.raster());
-    report.output_format = kGeoTiff.name;
-    report.output_bytes = file.finish();
-  }
-  report.write_seconds = watch.end(pixels);
-  report.left_out += dem.left_out();
-  report.threads = dem_options_.threads;
+  std::vector<std::string> files = {path_};
+  with_threads(dem_options_.threads, [&] {
+    if (pixels_ != nullptr) {
+      RasterOptions raster = dem.raster_options();
+      raster.grid.crs = crs_;
+      PixelsInMemory to(raster, *pixels_);
+      dem.write(to, progress, of_others);
+      return;
+    }
+    for (std::size_t s = 0; s < dem.sheets().size(); ++s) {
+      if (!dem.is_written(s)) write_sheet(s, progress, of_others);
+      before += std::uint64_t{dem.sheets()[s].rows} * dem.sheets()[s].columns;
+    }
+  });
   report_ = {.columns = grid.columns,
              .rows = grid.rows,
              .resolution = grid.resolution,
@@ -388,6 +447,21 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
              .pixels_with_data = dem.pixels_with_data(),
              .closed_tiles = dem.closed_tiles(),
              .spilled_bytes = dem.spilled_bytes()};
+  if (tiles_) {
+    files = written_files();
+    report_.files = files.size();
+    report_.files_during_run = early;
+    report_.empty_tiles = dem.sheets().size() - files.size();
+    report_.other_files = tiles_->others_than(files);
+    write_vrt(files);
+  }
+  if (pixels_ == nullptr) {
+    report.output_format = kGeoTiff.name;
+    for (const std::string& file : files) report.output_bytes += std::filesystem::file_size(file);
+  }
+  report.write_seconds = watch.end(pixels);
+  report.left_out += dem.left_out();
+  report.threads = dem_options_.threads;
 }
 
 }  // namespace spillway::stream

@@ -2,14 +2,18 @@
 
 #include <spillway/dem.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/disk/scratch_folder.h"
 #include "formats/gdal/raster.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/products/square_sheets.h"
 #include "stream/sinks/dem.h"
 #include "stream/sinks/dem_writer.h"
 
@@ -54,7 +58,13 @@ class DemFile final : public OwnSink<DemSink> {
   void check_size(const Box<2>& extent, std::uint64_t vertices) const;
   void tell_of_degrees();
 
-  std::string path_;             ///< empty: pixels_ takes them
+  using Progress = std::function<void(std::uint64_t pixels)>;
+  void write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others);
+  [[nodiscard]] std::string path_of(std::size_t sheet) const;
+  [[nodiscard]] std::vector<std::string> written_files() const;
+  void write_vrt(const std::vector<std::string>& files);
+
+  std::string path_;             ///< empty: pixels_ takes them; of tiles, a pattern
   DemPixels* pixels_ = nullptr;  ///< or none
   DemOptions options_;
   RasterGrid like_;
@@ -62,6 +72,7 @@ class DemFile final : public OwnSink<DemSink> {
   std::shared_ptr<ScratchFolder> scratch_;
   std::string crs_;
   bool told_of_degrees_ = false;
+  std::optional<SquareSheets> tiles_;
   std::optional<Dem> dem_;
   std::optional<DemWriter> writer_;
   DemReport report_;

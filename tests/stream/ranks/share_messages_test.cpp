@@ -38,7 +38,7 @@ void give(Dem& dem) {
 
 void write(Dem& dem, Raster& raster, const std::function<void(std::uint64_t)>& progress) {
   SharesOfOtherRanks others(world());
-  write_with_others(dem, others, raster, progress);
+  dem.write(raster, progress, tiles_of_others(others));
   others.end();
 }
 
