@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/gdal/geotiff_key_records.h"
+#include "formats/gdal/polygon_layer.h"
 #include "formats/gdal/raster.h"
 #include "formats/gdal/vector_layer.h"
 
@@ -78,6 +79,10 @@ class Gdal {
   /// Opens the one layer of triangles of a vector file.
   [[nodiscard]] virtual std::unique_ptr<TriangleLayer> open_layer(
       const std::string& path) const = 0;
+
+  /// The polygons of a vector file of one layer; arcs become short lines. Throws Failure for other
+  /// geometries.
+  [[nodiscard]] virtual PolygonLayer read_polygons(const std::string& path) const = 0;
 
   /// The names of all tables of a GeoPackage, of features, attributes and tiles; none if it cannot
   /// be read.

@@ -57,7 +57,10 @@ struct DemOptions {
   /// Pixels are aligned. Files have the pixels of the raster as they are, and there is none for a
   /// square without data. Of points that are triangulated, most get their names during the run.
   double tile_side = 0;
-  /// A VRT that puts tiles together; empty: the path without "{x}" and "{y}", with .vrt at its end.
+  /// Or a vector file of polygons, of one layer: for each there is a file of the pixels whose centres
+  /// lie in it, and fields of it stand in braces in the path, as in "dtm_{name}.tif".
+  std::string tile_polygons{};
+  /// A VRT that puts tiles together; empty: the path without what is in braces, with .vrt at its end.
   std::string vrt{};
 };
 

@@ -122,10 +122,10 @@ Box<2> Dem::in_output(const Box<2>& extent) const {
 void Dem::begin(const Box<2>& extent) { begin(choose_grid(options_.grid, in_output(extent))); }
 
 void Dem::begin(const PixelGrid& grid) {
-  const std::vector<PixelWindow> windows =
+  const std::vector<SheetPlace> places =
       options_.sheets ? options_.sheets(grid)
-                      : std::vector<PixelWindow>{{0, grid.rows, 0, grid.columns}};
-  sheets_ = RasterSheets(grid, windows, has_neighbours(options_.products));
+                      : std::vector<SheetPlace>{{{0, grid.rows, 0, grid.columns}}};
+  sheets_ = RasterSheets(grid, places, has_neighbours(options_.products));
   const std::uint64_t bands = std::max(options_.products.size(), layers_.size());
   std::uint64_t output = 0;
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
@@ -464,7 +464,7 @@ SheetContent Dem::write(Raster& raster, const std::function<void(std::uint64_t p
   const std::uint64_t slots =
       writes_early() ? DemOutput::kLeastSlots
                      : 2 * options_.memory / DemOutput::slot_bytes(options_.products, layers_);
-  DemOutput output(options_, layers_, sheets_[sheet], *store_,
+  DemOutput output(options_, layers_, sheets_[sheet], sheets_.outline(sheet), *store_,
                    std::clamp<std::size_t>(slots, DemOutput::kLeastSlots, options_.threads + 2));
   state.content = output.write(raster, progress, others);
   return state.content;

@@ -78,10 +78,12 @@ struct DemOutput::Slot {
 };
 
 DemOutput::DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
-                     const TileLayout& tiles, RasterStore& store, std::size_t slots)
+                     const TileLayout& tiles, const PolygonPixels* outline, RasterStore& store,
+                     std::size_t slots)
     : options_(options),
       layers_(layers),
       tiles_(tiles),
+      outline_(outline),
       store_(store),
       slots_(slots),
       light_direction_(direction_of(options.light)),
@@ -212,6 +214,7 @@ void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
     finish_band(options_.products[b], size, band_of(slot.bands, b));
   }
+  if (outline_ != nullptr) cut_out(tile, slot.bands);
   const auto pixels_with_data = [&](std::size_t b) {
     std::uint64_t count = 0;
     for (std::uint32_t row = 0; row < size.rows; ++row) {
@@ -227,6 +230,28 @@ void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
   slot.content.is_empty = slot.content.pixels_with_data == 0;
   for (std::size_t b = 1; b < options_.products.size() && slot.content.is_empty; ++b) {
     slot.content.is_empty = pixels_with_data(b) == 0;
+  }
+}
+
+/// Leaves nothing beside the outline.
+void DemOutput::cut_out(std::uint64_t tile, std::vector<float>& bands) const {
+  const auto [rows, columns] = tiles_.size(tile);
+  const std::uint32_t top = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
+  const std::uint32_t left = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    std::uint32_t column = 0;
+    const auto clear_to = [&](std::uint32_t end) {
+      for (; column < end; ++column) {
+        for (std::size_t b = 0; b < options_.products.size(); ++b) {
+          band_of(bands, b)[std::size_t{row} * kRasterTile + column] = options_.nodata;
+        }
+      }
+    };
+    for (const auto& [begin, end] : outline_->row(top + row)) {
+      clear_to(std::clamp(begin, left, left + columns) - left);
+      column = std::max(column, std::clamp(end, left, left + columns) - left);
+    }
+    clear_to(columns);
   }
 }
 

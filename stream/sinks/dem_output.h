@@ -36,9 +36,10 @@ struct SheetContent {
 /// the store a row ahead for the heights at their edges, and put back.
 class DemOutput {
  public:
-  /// All of them must outlive it. It has so many tiles in work at a time.
+  /// All of them must outlive it. Pixels beside an outline get no data. It has so many tiles in work at a time.
   DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
-            const TileLayout& tiles, RasterStore& store, std::size_t slots);
+            const TileLayout& tiles, const PolygonPixels* outline, RasterStore& store,
+            std::size_t slots);
 
   /// The least number of tiles in work, so that one is made while another is written.
   static constexpr std::size_t kLeastSlots = 2;
@@ -66,11 +67,13 @@ class DemOutput {
   void derive(std::uint64_t tile, Slot& slot) const;
   [[nodiscard]] double value_of(DemProduct product, const Neighbourhood& z, const Point<2>& sides,
                                 const Gradient& gradient) const;
+  void cut_out(std::uint64_t tile, std::vector<float>& bands) const;
   void finish_band(DemProduct product, TileLayout::Size size, std::span<float> band) const;
 
   const DemSinkOptions& options_;
   const std::vector<DemProduct>& layers_;
   const TileLayout& tiles_;
+  const PolygonPixels* const outline_;
   RasterStore& store_;
   const std::size_t slots_;
   std::vector<Derived> derived_;

@@ -6,15 +6,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "src/terrain/grid_choice.h"
 #include "src/terrain/ground_scale.h"
 #include "src/terrain/pixel_values.h"
+#include "src/terrain/polygon_pixels.h"
 #include "src/terrain/triangle_pixels.h"
 
 namespace spillway::stream {
+
+/// A sheet of a raster.
+struct SheetPlace {
+  PixelWindow window;
+  std::shared_ptr<const PolygonPixels> outline{};  ///< pixels beside it have no data; null: none
+};
 
 struct DemSinkOptions {
   std::vector<DemProduct> products{DemProduct::kHeight};  ///< the bands
@@ -31,7 +39,7 @@ struct DemSinkOptions {
   /// triangles that do not overlap, all of which are painted here.
   bool closes_tiles = false;
   /// Where the sheets lie that the raster is cut into, once its grid is known. Nothing: one sheet.
-  std::function<std::vector<PixelWindow>(const PixelGrid& raster)> sheets{};
+  std::function<std::vector<SheetPlace>(const PixelGrid& raster)> sheets{};
   /// Told of a sheet of which no pixel changes any more, to be written while others are painted. One
   /// at a time, by a thread that paints.
   std::function<void(std::size_t sheet)> sheet_is_final{};

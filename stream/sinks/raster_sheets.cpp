@@ -15,11 +15,12 @@ double edge_of(double origin, double pixels, double resolution) {
 
 }  // namespace
 
-RasterSheets::RasterSheets(const PixelGrid& raster, std::span<const PixelWindow> windows,
+RasterSheets::RasterSheets(const PixelGrid& raster, std::span<const SheetPlace> places,
                            bool with_ring)
     : raster_(raster), margin_(with_ring ? 1 : 0) {
   std::uint64_t stored = 0;
-  for (const PixelWindow& window : windows) {
+  for (const auto& [window, outline] : places) {
+    outlines_.push_back(outline);
     stored += sheets_.emplace_back(raster, window, with_ring, stored).stored_count();
     band_rows_.push_back(window.row_begin);
     band_rows_.push_back(window.row_end + 2 * margin_);

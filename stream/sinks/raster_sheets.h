@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "src/geometry/pixel_grid.h"
+#include "stream/sinks/dem_sink_options.h"
 #include "stream/sinks/tile_layout.h"
 
 namespace spillway::stream {
@@ -17,7 +19,7 @@ class RasterSheets {
  public:
   RasterSheets() = default;
   /// Sheets may overlap, and need not cover the raster.
-  RasterSheets(const PixelGrid& raster, std::span<const PixelWindow> windows, bool with_ring);
+  RasterSheets(const PixelGrid& raster, std::span<const SheetPlace> places, bool with_ring);
 
   [[nodiscard]] std::size_t size() const { return sheets_.size(); }
   [[nodiscard]] const TileLayout& operator[](std::size_t sheet) const { return sheets_[sheet]; }
@@ -26,6 +28,10 @@ class RasterSheets {
   [[nodiscard]] std::uint32_t margin() const { return margin_; }
   /// Tiles of all sheets, those of rings included.
   [[nodiscard]] std::uint64_t stored_tiles() const;
+  /// Its outline; null: none.
+  [[nodiscard]] const PolygonPixels* outline(std::size_t sheet) const {
+    return outlines_[sheet].get();
+  }
   /// The sheet that a stored tile is of.
   [[nodiscard]] std::size_t sheet_of_stored(std::uint64_t number) const;
   /// The place of a sheet on the ground.
@@ -62,6 +68,7 @@ class RasterSheets {
   std::uint32_t margin_ = 0;
   bool is_whole_ = false;  ///< one sheet, the raster itself
   std::vector<TileLayout> sheets_;
+  std::vector<std::shared_ptr<const PolygonPixels>> outlines_;
   std::vector<std::uint32_t> band_rows_;     ///< where the sheets of a row change
   std::vector<std::vector<Columns>> bands_;  ///< the sheets between; by their first column
 };

@@ -106,13 +106,17 @@ void set_tiles(const DemCommandOptions& options, DemOptions& dem) {
     refuse_given(*options.app, {"--vrt"}, "without --tiles, which a VRT puts together");
     if (name.string().find("{x}") != std::string::npos) {
       throw UsageError(
-          fmt::format("{}: {{x}} in a name is for tiles; give --tiles SIDE, too", options.output));
+          fmt::format("{}: {{x}} in a name is for tiles; give --tiles, too", options.output));
     }
     return;
   }
-  refuse_given(*options.app, {"--align"}, "with --tiles, which aligns pixels");
-  dem.tile_side = parse_resolution(options.tiles);
   dem.vrt = options.vrt;
+  if (!parse_number(options.tiles)) {
+    dem.tile_polygons = options.tiles;
+    return;
+  }
+  refuse_given(*options.app, {"--align"}, "with tiles that are squares, which align pixels");
+  dem.tile_side = parse_resolution(options.tiles);
 }
 
 Extent parse_raster_bounds(const std::string& text) {
@@ -127,7 +131,7 @@ Extent parse_raster_bounds(const std::string& text) {
 
 void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   app.add_option("-o,--output", options.output,
-                 "GeoTIFF file; of tiles, with {x} and {y} in its name")
+                 "GeoTIFF file; of --tiles a pattern, like dtm_{x}_{y}.tif")
       .required()
       .value_name("FILE");
   add_terrain_options(app, options);
@@ -160,12 +164,11 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .group(group)
       // Its coordinate system is compared with that of a mesh, too.
       .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
-  take_parsed(app.add_option("--tiles", options.tiles,
-                             "Cut the raster into files of this side, in units of x and y"),
-              parse_resolution)
-      .value_name("SIDE")
+  app.add_option("--tiles", options.tiles,
+                 "Cut the raster into squares of this side, or by the polygons of a file")
+      .value_name("SIDE|FILE")
       .group(group);
-  app.add_option("--vrt", options.vrt, "Of tiles, what puts them together [-o, without x and y]")
+  app.add_option("--vrt", options.vrt, "Of tiles, what puts them together [like -o]")
       .value_name("FILE")
       .group(group);
   take_parsed(app.add_option("--product", options.products,

@@ -13,8 +13,9 @@
 #include "formats/gdal/module/crs_units.h"
 #include "formats/gdal/module/gdal_errors.h"
 #include "formats/gdal/module/geotiff.h"
-#include "formats/gdal/module/mosaic.h"
 #include "formats/gdal/module/geotiff_crs.h"
+#include "formats/gdal/module/mosaic.h"
+#include "formats/gdal/module/ogr_polygons.h"
 #include "formats/gdal/vector_drivers.h"
 
 namespace spillway::formats {
@@ -76,6 +77,9 @@ class LoadedGdal : public Gdal {
   }
   [[nodiscard]] std::unique_ptr<TriangleLayer> open_layer(const std::string& path) const override {
     return open_ogr_layer(path);
+  }
+  [[nodiscard]] PolygonLayer read_polygons(const std::string& path) const override {
+    return read_ogr_polygons(path);
   }
   [[nodiscard]] std::vector<std::string> table_names(const std::string& path) const override {
     return geopackage_tables(path);

@@ -151,21 +151,19 @@ DemFile::DemFile(const std::string& path, const DemOptions& options, const Conte
   check_path(path_);
   check_type(options_);
   if (options_.type == PixelType::kByte) dem_options_.nodata = 0;
-  if (options_.tile_side != 0) {
-    tiles_.emplace(path_, options_.tile_side);
-    dem_options_.grid.align = true;
-    dem_options_.sheets = [this](const PixelGrid& raster) { return tiles_->windows(raster); };
+  tiling_ = make_tiling(path_, options_);
+  if (tiling_) {
+    dem_options_.grid.align = options_.align || options_.tile_side != 0;
+    dem_options_.sheets = [this](const PixelGrid& raster) { return lay_tiles(raster); };
     dem_options_.sheet_is_final = [this](std::size_t sheet) {
       write_sheet(
           sheet, [](std::uint64_t) {}, nullptr);
     };
-    if (options_.vrt.empty()) options_.vrt = tiles_->vrt_path();
-  } else if (!options_.vrt.empty()) {
-    throw InvalidArgument("a VRT puts tiles together, and none are asked for");
+    if (options_.vrt.empty()) options_.vrt = vrt_path_of(path_);
   }
   if (is_first_process(context)) {
     check_can_create(disk(), path_);
-    if (tiles_) check_can_create(disk(), options_.vrt);
+    if (tiling_) check_can_create(disk(), options_.vrt);
   }
 }
 
@@ -242,6 +240,7 @@ void DemFile::identify(RunIdentity& identity) const {
   add("gradient", options_.gradient == GradientMethod::kHorn ? "Horn" : "Zevenbergen-Thorne");
   add("values at edges", options_.compute_edges);
   add("side of tiles", options_.tile_side);
+  if (!options_.tile_polygons.empty()) identity.add_file("polygons", options_.tile_polygons);
   add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
 }
 
@@ -345,6 +344,10 @@ PixelGrid DemFile::grid_of(const Box<2>& extent) const {
 void DemFile::check_crs(const MeshStart& start) const {
   if (options_.foreign_crs) return;
   check_same_crs(start.name, start.header.crs, options_.like, like_.crs, options_.like);
+  if (tiling_) {
+    check_same_crs(start.name, start.header.crs, options_.tile_polygons, tiling_->crs(),
+                   options_.tile_polygons);
+  }
 }
 
 /// Refuses a raster that is large because of points far away, unless that is wanted. Says how large
@@ -377,15 +380,18 @@ void DemFile::give_share(ShareSender& sender) {
   with_threads(dem_options_.threads, [&] { give_tiles(*dem_, sender); });
 }
 
-std::string DemFile::path_of(std::size_t sheet) const {
-  return tiles_ ? tiles_->path(dem_->grid(), dem_->sheets()[sheet].window) : path_;
+std::vector<SheetPlace> DemFile::lay_tiles(const PixelGrid& raster) {
+  tiles_ = tiling_->tiles(raster);
+  std::vector<SheetPlace> places;
+  for (const RasterTile& tile : tiles_) places.push_back({tile.window, tile.outline});
+  return places;
 }
 
 /// Those of tiles, which may be there before all is.
 std::vector<std::string> DemFile::written_files() const {
   std::vector<std::string> files;
-  for (std::size_t s = 0; dem_ && s < dem_->sheets().size(); ++s) {
-    if (tiles_ && dem_->is_written(s) && !dem_->content(s).is_empty) files.push_back(path_of(s));
+  for (std::size_t s = 0; s < tiles_.size(); ++s) {
+    if (dem_->is_written(s) && !dem_->content(s).is_empty) files.push_back(tiles_[s].path);
   }
   return files;
 }
@@ -393,12 +399,13 @@ std::vector<std::string> DemFile::written_files() const {
 /// A tile without data has no file.
 void DemFile::write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others) {
   constexpr std::uint64_t kShareForOverviews = 4;
-  RasterOptions raster = file_options(path_of(sheet), options_, dem_->raster_options(sheet));
+  RasterOptions raster =
+      file_options(tiling_ ? tiles_[sheet].path : path_, options_, dem_->raster_options(sheet));
   raster.grid.crs = crs_;
-  if (tiles_) raster.memory /= kShareForOverviews;  // pixels of other tiles are there
+  if (tiling_) raster.memory /= kShareForOverviews;  // pixels of other tiles are there
   RasterFile file(std::move(raster));
   const SheetContent content = dem_->write(file.raster(), progress, others, sheet);
-  if (!tiles_ || !content.is_empty) file.finish();
+  if (!tiling_ || !content.is_empty) file.finish();
 }
 
 void DemFile::write_vrt(const std::vector<std::string>& files) {
@@ -447,12 +454,12 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
              .pixels_with_data = dem.pixels_with_data(),
              .closed_tiles = dem.closed_tiles(),
              .spilled_bytes = dem.spilled_bytes()};
-  if (tiles_) {
+  if (tiling_) {
     files = written_files();
     report_.files = files.size();
     report_.files_during_run = early;
     report_.empty_tiles = dem.sheets().size() - files.size();
-    report_.other_files = tiles_->others_than(files);
+    report_.other_files = tiling_->others_than(files);
     write_vrt(files);
   }
   if (pixels_ == nullptr) {

@@ -13,7 +13,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/gdal/raster.h"
 #include "stream/library/meshes/engine_sink.h"
-#include "stream/library/products/square_sheets.h"
+#include "stream/library/products/raster_tiling.h"
 #include "stream/sinks/dem.h"
 #include "stream/sinks/dem_writer.h"
 
@@ -60,8 +60,8 @@ class DemFile final : public OwnSink<DemSink> {
 
   using Progress = std::function<void(std::uint64_t pixels)>;
   void write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others);
-  [[nodiscard]] std::string path_of(std::size_t sheet) const;
   [[nodiscard]] std::vector<std::string> written_files() const;
+  [[nodiscard]] std::vector<SheetPlace> lay_tiles(const PixelGrid& raster);
   void write_vrt(const std::vector<std::string>& files);
 
   std::string path_;             ///< empty: pixels_ takes them; of tiles, a pattern
@@ -72,7 +72,8 @@ class DemFile final : public OwnSink<DemSink> {
   std::shared_ptr<ScratchFolder> scratch_;
   std::string crs_;
   bool told_of_degrees_ = false;
-  std::optional<SquareSheets> tiles_;
+  std::unique_ptr<RasterTiling> tiling_;  ///< or null
+  std::vector<RasterTile> tiles_;         ///< of the raster that is begun
   std::optional<Dem> dem_;
   std::optional<DemWriter> writer_;
   DemReport report_;

@@ -1,4 +1,4 @@
-#include "stream/library/products/square_sheets.h"
+#include "stream/library/products/square_tiling.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kX = "{x}";
 constexpr std::string_view kY = "{y}";
 
-constexpr double kMostSheets = 1e6;
+constexpr double kMostTiles = 1e6;
 
 /// A length that is a whole number of pixels but for rounding is taken for that.
 constexpr double kRoundingShare = 1e-9;
@@ -52,13 +52,13 @@ std::vector<std::uint32_t> cuts(std::int64_t first, std::int64_t square, std::ui
 }  // namespace
 
 /// Lengths in pixels.
-struct SquareSheets::Steps {
+struct SquareTiling::Steps {
   std::int64_t square;
   std::int64_t west;
   std::int64_t north;
 };
 
-SquareSheets::SquareSheets(std::string pattern, double side)
+SquareTiling::SquareTiling(std::string pattern, double side)
     : pattern_(std::move(pattern)), side_(side) {
   if (!(side_ > 0) || !std::isfinite(side_)) {
     throw InvalidArgument(fmt::format("tiles have a side above 0, not of {}", side_));
@@ -77,7 +77,7 @@ SquareSheets::SquareSheets(std::string pattern, double side)
   }
 }
 
-SquareSheets::Steps SquareSheets::steps_of(const PixelGrid& raster) const {
+SquareTiling::Steps SquareTiling::steps_of(const PixelGrid& raster) const {
   const double pixel = raster.resolution;
   const double square = std::round(side_ / pixel);
   if (square < 1 || std::abs(square * pixel - side_) > kRoundingShare * side_) {
@@ -97,11 +97,11 @@ SquareSheets::Steps SquareSheets::steps_of(const PixelGrid& raster) const {
   return {static_cast<std::int64_t>(square), steps_to(raster.west), steps_to(raster.north)};
 }
 
-std::vector<PixelWindow> SquareSheets::windows(const PixelGrid& raster) const {
+std::vector<RasterTile> SquareTiling::tiles(const PixelGrid& raster) const {
   const auto [square, west, north] = steps_of(raster);
   const double count = (static_cast<double>(raster.columns) / static_cast<double>(square) + 1) *
                        (static_cast<double>(raster.rows) / static_cast<double>(square) + 1);
-  if (count > kMostSheets) {
+  if (count > kMostTiles) {
     throw InvalidArgument(
         fmt::format("a raster of {} x {} pixels has more than a million tiles of side {}: choose a "
                     "larger one",
@@ -111,42 +111,28 @@ std::vector<PixelWindow> SquareSheets::windows(const PixelGrid& raster) const {
       cuts((quotient(west, square) + 1) * square - west, square, raster.columns);
   const std::vector<std::uint32_t> rows =
       cuts(north - quotient(north - 1, square) * square, square, raster.rows);
-  std::vector<PixelWindow> windows;
+  std::vector<RasterTile> tiles;
   for (std::size_t r = 1; r < rows.size(); ++r) {
     for (std::size_t c = 1; c < columns.size(); ++c) {
-      windows.push_back({rows[r - 1], rows[r], columns[c - 1], columns[c]});
+      tiles.push_back({{rows[r - 1], rows[r], columns[c - 1], columns[c]},
+                       path_of(quotient(west + columns[c - 1], square),
+                               quotient(north - rows[r - 1] - 1, square))});
     }
   }
-  return windows;
+  return tiles;
 }
 
-std::string SquareSheets::path(const PixelGrid& raster, const PixelWindow& window) const {
-  const auto [square, west, north] = steps_of(raster);
-  const auto corner = [&](std::int64_t steps) {
-    return fmt::format("{:.12g}", static_cast<double>(quotient(steps, square)) * side_ + 0.0);
+/// Of a square, which is counted from the origin to the east and to the north.
+std::string SquareTiling::path_of(std::int64_t column, std::int64_t row) const {
+  const auto corner = [this](std::int64_t number) {
+    return fmt::format("{:.12g}", static_cast<double>(number) * side_ + 0.0);
   };
   const fs::path path(pattern_);
-  const std::string name =
-      replaced(replaced(path.filename(), kX, corner(west + window.column_begin)), kY,
-               corner(north - window.row_begin - 1));
-  return path.parent_path() / name;
+  return path.parent_path() /
+         replaced(replaced(path.filename(), kX, corner(column)), kY, corner(row));
 }
 
-std::string SquareSheets::vrt_path() const {
-  constexpr std::string_view kSeparators = "_-., ";
-  const fs::path path(pattern_);
-  std::string stem = replaced(replaced(path.stem(), kX, "_"), kY, "_");
-  const auto repeated = std::ranges::unique(stem, [&](char a, char b) {
-    return kSeparators.find(a) != kSeparators.npos && kSeparators.find(b) != kSeparators.npos;
-  });
-  stem.erase(repeated.begin(), repeated.end());
-  const std::size_t first = stem.find_first_not_of(kSeparators);
-  if (first == std::string::npos) return path.parent_path() / "tiles.vrt";
-  stem = stem.substr(first, stem.find_last_not_of(kSeparators) + 1 - first);
-  return path.parent_path() / (stem + ".vrt");
-}
-
-std::vector<std::string> SquareSheets::others_than(std::vector<std::string> paths) const {
+std::vector<std::string> SquareTiling::others_than(std::vector<std::string> paths) const {
   constexpr const char* kNumber = "-?[0-9]+(\\.[0-9]+)?(e[+-]?[0-9]+)?";
   const fs::path path(pattern_);
   const std::regex special(R"([-[\]{}()*+?.,\^$|#\s])");

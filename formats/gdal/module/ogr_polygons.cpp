@@ -1,0 +1,84 @@
+#include "formats/gdal/module/ogr_polygons.h"
+
+#include <fmt/format.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "formats/gdal/module/crs.h"
+#include "formats/gdal/module/gdal_errors.h"
+#include "src/error.h"
+
+namespace spillway::formats {
+namespace {
+
+std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
+  std::vector<Point<2>> points;
+  for (int i = 0; i + 1 < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
+  return points;
+}
+
+/// Adds the rings of a polygon or of a collection of some; false if it is anything else.
+bool add_rings(const OGRGeometry& geometry, std::vector<std::vector<Point<2>>>& rings) {
+  if (const auto* const parts = dynamic_cast<const OGRGeometryCollection*>(&geometry)) {
+    for (const OGRGeometry* const part : parts) {
+      if (!add_rings(*part, rings)) return false;
+    }
+    return true;
+  }
+  const auto* const polygon = dynamic_cast<const OGRPolygon*>(&geometry);
+  if (polygon == nullptr) return false;
+  for (const OGRLinearRing* const ring : polygon) rings.push_back(points_of(*ring));
+  return true;
+}
+
+PolygonFeature feature_of(OGRFeature& feature, const std::string& path) {
+  PolygonFeature result;
+  const OGRGeometry* const geometry = feature.GetGeometryRef();
+  // Arcs become short lines.
+  const std::unique_ptr<OGRGeometry> linear(geometry == nullptr ? nullptr
+                                                                : geometry->getLinearGeometry());
+  if (!linear || !add_rings(*linear, result.rings)) {
+    throw BadInput(
+        path, fmt::format("feature {} is no polygon, but {}", feature.GetFID(),
+                          geometry == nullptr ? "has no geometry" : geometry->getGeometryName()));
+  }
+  for (int f = 0; f < feature.GetFieldCount(); ++f) {
+    result.fields[feature.GetFieldDefnRef(f)->GetNameRef()] = feature.GetFieldAsString(f);
+  }
+  return result;
+}
+
+}  // namespace
+
+PolygonLayer read_ogr_polygons(const std::string& path) {
+  forget_gdal_errors();
+  constexpr unsigned kHow = GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
+  const GDALDatasetUniquePtr file(GDALDataset::Open(path.c_str(), kHow, nullptr, nullptr, nullptr));
+  if (!file) {
+    throw Failure(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
+                  {.file = path});
+  }
+  if (file->GetLayerCount() != 1) {
+    throw BadInput(path, fmt::format("it has {} layers, and polygons are read from one; copy that "
+                                     "layer to a file of its own",
+                                     file->GetLayerCount()));
+  }
+  OGRLayer& layer = *file->GetLayer(0);
+  PolygonLayer result;
+  const OGRSpatialReference* const crs = layer.GetSpatialRef();
+  if (crs != nullptr && !std::string_view(crs->GetName()).starts_with("Undefined ")) {
+    result.crs = wkt_of(crs);
+  }
+  for (const auto& feature : layer) result.polygons.push_back(feature_of(*feature, path));
+  if (gdal_failed()) {
+    throw Failure(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
+                  {.file = path});
+  }
+  if (result.polygons.empty()) throw BadInput(path, "it has no polygons");
+  return result;
+}
+
+}  // namespace spillway::formats

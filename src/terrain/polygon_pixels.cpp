@@ -1,0 +1,87 @@
+#include "src/terrain/polygon_pixels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace spillway::terrain {
+namespace {
+
+/// Where an edge crosses a row: the first column whose centre is not west of it.
+struct Crossing {
+  std::uint32_t row;
+  std::uint32_t column;
+
+  auto operator<=>(const Crossing&) const = default;
+};
+
+std::uint32_t clamped(double number, std::uint32_t most) {
+  if (!(number > 0)) return 0;
+  return number < most ? static_cast<std::uint32_t>(number) : most;
+}
+
+std::uint32_t first_column(const PixelGrid& raster, double x) {
+  std::uint32_t c = clamped((x - raster.west) / raster.resolution, raster.columns);
+  while (c > 0 && raster.centre_x(c - 1) >= x) --c;
+  while (c < raster.columns && raster.centre_x(c) < x) ++c;
+  return c;
+}
+
+/// The first row whose centre is south of y.
+std::uint32_t first_row(const PixelGrid& raster, double y) {
+  std::uint32_t r = clamped((raster.north - y) / raster.resolution, raster.rows);
+  while (r > 0 && raster.centre_y(r - 1) < y) --r;
+  while (r < raster.rows && raster.centre_y(r) >= y) ++r;
+  return r;
+}
+
+/// Of the edge between two corners, whichever comes first: neighbours compute the same.
+void add_crossings(const PixelGrid& raster, const Point<2>& a, const Point<2>& b,
+                   std::vector<Crossing>& crossings) {
+  if (a[1] == b[1]) return;
+  const auto& [low, high] = a[1] < b[1] ? std::pair(a, b) : std::pair(b, a);
+  const double slope = (high[0] - low[0]) / (high[1] - low[1]);
+  const std::uint32_t end = first_row(raster, low[1]);
+  for (std::uint32_t row = first_row(raster, high[1]); row < end; ++row) {
+    const double x = low[0] + (raster.centre_y(row) - low[1]) * slope;
+    crossings.push_back({row, first_column(raster, x)});
+  }
+}
+
+}  // namespace
+
+PolygonPixels::PolygonPixels(std::span<const std::vector<Point<2>>> rings,
+                             const PixelGrid& raster) {
+  std::vector<Crossing> crossings;
+  for (const std::vector<Point<2>>& ring : rings) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      add_crossings(raster, ring[i], ring[(i + 1) % ring.size()], crossings);
+    }
+  }
+  std::ranges::sort(crossings);
+  std::vector<std::uint32_t> rows;
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+    const auto [row, begin] = crossings[i];
+    const std::uint32_t end = crossings[i + 1].column;
+    if (begin == end) continue;
+    if (!rows.empty() && rows.back() == row && runs_.back().end == begin) {
+      runs_.back().end = end;
+      continue;
+    }
+    rows.push_back(row);
+    runs_.push_back({begin, end});
+  }
+  if (runs_.empty()) {
+    first_run_ = {0};
+    return;
+  }
+  window_ = {rows.front(), rows.back() + 1, std::ranges::min(runs_, {}, &ColumnRun::begin).begin,
+             std::ranges::max(runs_, {}, &ColumnRun::end).end};
+  for (std::uint32_t row = window_.row_begin; row <= window_.row_end; ++row) {
+    first_run_.push_back(
+        static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin()));
+  }
+}
+
+}  // namespace spillway::terrain
