@@ -52,6 +52,7 @@ spillway_test(point_input_test unit
 
 spillway_test(dem_test property
   SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_neighbours_test.cpp stream/sinks/dem_oracle_test.cpp
+          stream/sinks/dem_sheets_test.cpp
   LIBS spillway_stream_ranks
   TIMEOUT 300)
 
@@ -100,7 +101,8 @@ spillway_test(stream_library_test unit
           stream/library/products/check_test.cpp stream/library/products/height_test.cpp
           stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp
-          stream/library/products/products_test.cpp stream/library/products/volume_test.cpp
+          stream/library/products/products_test.cpp stream/library/products/raster_tiling_test.cpp
+          stream/library/products/volume_test.cpp
   LIBS spillway_stream spillway_library)
 
 spillway_test(stream_ground_test unit

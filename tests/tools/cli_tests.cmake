@@ -65,6 +65,7 @@ if(SPILLWAY_GDAL)
     tools/commands/cli_batch_buffer_test.cpp
     tools/commands/cli_dem_test.cpp tools/commands/cli_dem_survey_test.cpp
     tools/commands/cli_dem_gdaldem_test.cpp
+    tools/commands/cli_dem_tiles_test.cpp
     tools/commands/cli_dem_units_test.cpp
     tools/commands/cli_layers_test.cpp)
   target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)

@@ -278,6 +278,63 @@ TEST_F(RasterStoreTest, PutsTilesOnTheDiskThatAreClosedBeforeOthers) {
   EXPECT_EQ(*hand.tile(1000), 7);
 }
 
+/// A tile is taken as soon as it is closed, while other threads pack tiles and write them to the disk.
+TEST_F(RasterStoreTest, GivesTilesThatAreClosedWhileOthersArePainted) {
+  constexpr std::uint64_t kTiles = 240;
+  constexpr std::size_t kHalf = RasterStore::kTilePixels / 2;
+  for (const std::uint64_t room : {0, 6, 30}) {
+    std::mutex mutex;
+    std::vector<std::uint64_t> closed;
+    RasterStore store({PixelRule::kEqual}, room * kTileBytes, *scratch_, all_pixels,
+                      [&](std::uint64_t number) {
+                        const std::lock_guard lock(mutex);
+                        closed.push_back(number);
+                      });
+    std::atomic<std::uint64_t> taken = 0;
+    // Each half of a tile is painted by another thread.
+    const auto paint = [&](std::size_t half) {
+      RasterStore::Hand hand(store);
+      for (std::uint64_t t = 0; t < kTiles; ++t) {
+        const std::uint64_t number = half == 0 ? t : t ^ 7;
+        float* const pixels = hand.tile(number);
+        ASSERT_NE(pixels, nullptr);
+        for (std::size_t i = half * kHalf; i < (half + 1) * kHalf; ++i) {
+          set_pixel(pixels[i], static_cast<float>(number * 3 + half));
+        }
+        hand.decide(kHalf);
+      }
+    };
+    const auto take = [&] {
+      std::vector<float> pixels;
+      while (taken < kTiles) {
+        std::optional<std::uint64_t> number;
+        {
+          const std::lock_guard lock(mutex);
+          if (!closed.empty()) {
+            number = closed.back();
+            closed.pop_back();
+          }
+        }
+        if (!number) {
+          std::this_thread::yield();
+          continue;
+        }
+        store.take(*number, pixels);
+        ++taken;
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+          ASSERT_EQ(pixels[i], static_cast<float>(*number * 3 + i / kHalf)) << *number << ", " << i;
+        }
+      }
+    };
+    std::jthread first(paint, 0);
+    std::jthread second(paint, 1);
+    std::jthread taker(take);
+    taker.join();
+    EXPECT_EQ(taken, kTiles);
+    EXPECT_TRUE(store.tiles().empty());
+  }
+}
+
 /// Another process goes on from what was saved in the midst, whatever was on the disk then, and
 /// whatever the first one put there afterwards.
 TEST_F(RasterStoreTest, GoesOnFromWhatWasSaved) {
