@@ -42,6 +42,11 @@ void add_raster(const DemReport& raster, py::dict& statistics) {
   statistics["north"] = raster.north;
   statistics["bands"] = raster.bands;
   statistics["pixels_with_data"] = raster.pixels_with_data;
+  statistics["files"] = raster.files;
+  statistics["files_during_run"] = raster.files_during_run;
+  statistics["empty_tiles"] = raster.empty_tiles;
+  statistics["vrt"] = raster.vrt;
+  statistics["other_files"] = raster.other_files;
   statistics["closed_tiles"] = raster.closed_tiles;
   statistics["spilled_pixel_bytes"] = raster.spilled_bytes;
 }
@@ -73,6 +78,8 @@ py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,
   statistics["line_points"] = lines.points;
   statistics["lowest"] = lines.lowest;
   statistics["highest"] = lines.highest;
+  statistics["files"] = lines.files;
+  statistics["other_files"] = lines.other_files;
   statistics["spilled_line_bytes"] = lines.spilled_bytes;
   return statistics;
 }

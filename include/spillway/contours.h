@@ -34,6 +34,10 @@ struct ContourOptions {
   /// Instead of lines, polygons of what lies between neighbouring levels: not in DXF, and not with
   /// min_length. The edges of one band have to fit in memory, at some 200 bytes each.
   bool bands = false;
+  /// Above 0: a file for each square of this side that has lines, whose edges lie on multiples of it,
+  /// with the lines cut at them; in the path "{x}" and "{y}" stand for its south-western corner. Not
+  /// of bands.
+  double tile_side = 0;
 };
 
 /// What became of the lines.
@@ -46,6 +50,9 @@ struct ContourReport {
   double lowest = 0;
   double highest = 0;
   std::uint64_t spilled_bytes = 0;
+  std::uint64_t files = 1;
+  /// Files of other tiles that an earlier run may have left beside these.
+  std::vector<std::string> other_files{};
 };
 
 /// A file of contours in the making: a sink of triangulate() and convert().

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Sequence, overload
 
 import numpy as np
@@ -88,6 +89,8 @@ def dem(
     z_factor: float | None = None,
     gradient: str | None = None,
     compute_edges: bool = False,
+    tiles: float | PathLike | None = None,
+    vrt: PathLike | None = None,
     nodata: float | None = None,
     type: str | None = None,
     compress: str | None = None,
@@ -115,6 +118,8 @@ def dem(
     z_factor: float | None = None,
     gradient: str | None = None,
     compute_edges: bool = False,
+    tiles: float | PathLike | None = None,
+    vrt: PathLike | None = None,
     nodata: float | None = None,
     type: str | None = None,
     compress: str | None = None,
@@ -131,7 +136,8 @@ def dem(
     inputs : path, sequence of paths, or array_like of shape (n, 3)
         Points, as `triangulate` takes them, or one file of a mesh of triangles.
     output : path, optional
-        A GeoTIFF. By default an array is made, beyond the memory that `memory` limits.
+        A GeoTIFF; of `tiles` a pattern, like ``"dtm_{x}_{y}.tif"``. By default an array is made,
+        beyond the memory that `memory` limits.
     resolution : float
         Side of a pixel, in units of x and y. Not with `like`.
     bounds : (float, float, float, float), optional
@@ -159,6 +165,11 @@ def dem(
         How slope, aspect and hillshade come from a pixel's neighbours.
     compute_edges : bool, optional
         Make slopes and the like also where neighbours have no data.
+    tiles : float or path, optional
+        Cut the raster into files: squares of this side, with ``{x}`` and ``{y}`` in their names, or
+        by the polygons of this vector file, with fields of theirs in braces.
+    vrt : path, optional
+        Of tiles, the file that puts them together. By default as `output`, without braces.
     nodata : float, optional
         Of a file, the value of pixels without data; -9999 by default.
     type : {"float32", "byte"}, optional
@@ -225,9 +236,12 @@ def dem(
         if type == "byte":
             refuse(of_files, ["nodata"], "on bytes, in which 0 is no data")
         put_all(how, of_files)
+        _put_tiles(how, tiles, vrt, align)
         report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
         _warn_of_empty(report)
+        _warn_of_other_files(report)
         return report
+    of_files |= {"tiles": tiles, "vrt": vrt}
     refuse(of_files, of_files, "without an output")
     how.nodata = float("nan")
     figures, values, crs = _spillway.dem_in_memory(run, origin, how)
@@ -256,6 +270,7 @@ def contour(
     smooth: float | None = None,
     simplify: float | None = None,
     bands: bool = False,
+    tiles: float | None = None,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> ContourReport:
@@ -285,8 +300,10 @@ def contour(
     simplify : float, optional
         Leave out points of lines, moving these by at most this, likewise.
     bands : bool, optional
-        Polygons of what lies between neighbouring levels, instead of lines. Not with `index` and
-        `min_length`.
+        Polygons of what lies between neighbouring levels, instead of lines. Not with `index`,
+        `min_length` and `tiles`.
+    tiles : float, optional
+        Cut lines into files, squares of this side with ``{x}`` and ``{y}`` in their names.
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -311,9 +328,9 @@ def contour(
         raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
     put_all(how, {"interval": interval, "base": base, "levels": levels})
     put_all(how, {"index": index, "min_length": min_length})
-    put_all(how, {"smooth": smooth, "simplify": simplify})
+    put_all(how, {"smooth": smooth, "simplify": simplify, "tiles": tiles})
     if bands:
-        of_lines = {"index": index, "min_length": min_length}
+        of_lines = {"index": index, "min_length": min_length, "tiles": tiles}
         refuse(of_lines, of_lines, "with bands, which are no lines")
     how.bands = bands
     put_all(how, {"max_edge": options.get("max_edge")})
@@ -321,6 +338,7 @@ def contour(
     run = make_run(options)
     origin = mesh_origin(run, inputs, 2, mesh_format, options)
     report = ContourReport(**_spillway.contours(run, origin, as_path(output, "output"), how))
+    _warn_of_other_files(report)
     if report.lines == 0 and report.short_lines > 0:
         tell(True, f"no lines: {report.short_lines} lines left out: shorter than min_length")
     elif report.lines == 0 and not bands:
@@ -448,6 +466,31 @@ def _check_products(how: _spillway.DemOptions, surface: dict[str, Any], options:
             refuse(surface, [name], f"without {products} among the products")
     if how.products == ["density"]:
         refuse(options, ["heights", "max_edge"], "on density, which counts vertices")
+
+
+def _put_tiles(
+    how: _spillway.DemOptions, tiles: float | PathLike | None, vrt: PathLike | None, align: bool
+) -> None:
+    """Put what a raster is cut into."""
+    if tiles is None:
+        refuse({"vrt": vrt}, ["vrt"], "without tiles, which a VRT puts together")
+        return
+    if vrt is not None:
+        how.vrt = as_path(vrt, "vrt")
+    if isinstance(tiles, (str, bytes, os.PathLike)):
+        how.tile_polygons = as_path(tiles, "tiles")
+        return
+    refuse({"align": align}, ["align"], "with tiles that are squares, which align pixels")
+    put(how, "tiles", tiles, lambda target, side: setattr(target, "tile_side", side))
+
+
+def _warn_of_other_files(report: RasterReport | ContourReport) -> None:
+    if report.other_files:
+        tell(
+            True,
+            f"{', '.join(report.other_files)}: called like tiles of this run, which has not "
+            "written them",
+        )
 
 
 def _warn_of_empty(report: RasterReport) -> None:

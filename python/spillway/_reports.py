@@ -95,7 +95,9 @@ class RunReport(_Report):
 @dataclasses.dataclass(frozen=True, repr=False)
 class RasterReport(RunReport):
     """What a raster is like, and the run that made it. Lengths are in units of x and y; `west` and
-    `north` are the edges of the corner pixel, `bands` names of products."""
+    `north` are the edges of the corner pixel, `bands` names of products. Of tiles, `files` tells how
+    many were written, `files_during_run` how many of them before all triangles had come, and
+    `other_files` what is called like them and is of another run."""
 
     columns: int
     rows: int
@@ -104,6 +106,11 @@ class RasterReport(RunReport):
     north: float
     bands: list[str]
     pixels_with_data: int
+    files: int
+    files_during_run: int
+    empty_tiles: int
+    vrt: str
+    other_files: list[str]
     closed_tiles: int
     spilled_pixel_bytes: int
 
@@ -137,7 +144,9 @@ class HeightReport(RunReport):
 @dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
     """How many lines there are, or polygons, of how many points, how many lines were left out for
-    their length, the least and the greatest height of the terrain, and the run that made them."""
+    their length, the least and the greatest height of the terrain, and the run that made them. Of
+    tiles, `files` tells how many have lines, and `other_files` what is called like them and is of
+    another run."""
 
     lines: int
     short_lines: int
@@ -145,6 +154,8 @@ class ContourReport(RunReport):
     line_points: int
     lowest: float
     highest: float
+    files: int
+    other_files: list[str]
     spilled_line_bytes: int
 
     def _summary(self) -> str:

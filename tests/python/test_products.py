@@ -47,6 +47,26 @@ class Dem(InFolder):
                 self.assertEqual(bytes_of("b.tif"), bytes_of("a.tif"))
                 self.assertGreater(report.pixels_with_data, 0)
 
+    def test_tiles_are_those_of_the_command(self):
+        for folder in ("a", "b"):
+            os.makedirs(folder)
+        command("dem", "hills.las", "-o", "a/t_{x}_{y}.tif", "--resolution", 1, "--tiles", 100)
+        report = spillway.dem("hills.las", "b/t_{x}_{y}.tif", resolution=1, tiles=100)
+        self.assertEqual(sorted(os.listdir("a")), sorted(os.listdir("b")))
+        for name in os.listdir("a"):
+            self.assertEqual(bytes_of(f"a/{name}"), bytes_of(f"b/{name}"))
+        self.assertEqual(report.files, len(os.listdir("b")) - 1)
+        self.assertEqual(report.vrt, "b/t.vrt")
+        for message, options in (
+            ("vrt has no effect without tiles", {"vrt": "a.vrt"}),
+            ("align has no effect with tiles", {"tiles": 100, "align": True}),
+            ("need {x} and {y}", {"tiles": 100}),
+        ):
+            with self.assertRaisesRegex(spillway.InvalidArgumentError, message):
+                spillway.dem("hills.las", "c.tif", resolution=1, **options)
+        with self.assertRaisesRegex(spillway.InvalidArgumentError, "without an output"):
+            spillway.dem("hills.las", resolution=1, tiles=100)
+
     def test_an_array_has_the_pixels_of_the_file(self):
         gdal = self.gdal()
         command("triangulate", "hills.las", "-o", "mesh.spm")

@@ -14,6 +14,7 @@
 #include "tools/commands/run_statistics.h"
 #include "tools/commands/skipped_inputs.h"
 #include "tools/commands/terrain_input.h"
+#include "tools/commands/tile_files.h"
 #include "tools/options/command_options.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/text_output.h"
@@ -40,6 +41,7 @@ struct ContourCommandOptions : TerrainOptions {
   std::optional<double> smooth;
   std::optional<double> simplify;
   bool bands = false;
+  std::optional<double> tiles;
 };
 
 ContourOptions contour_options(const ContourCommandOptions& options) {
@@ -52,8 +54,11 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   contours.simplify = options.simplify;
   contours.bands = options.bands;
   if (options.bands) {
-    refuse_given(*options.app, {"--index", "--min-length"}, "with --bands, which are no lines");
+    refuse_given(*options.app, {"--index", "--min-length", "--tiles"},
+                 "with --bands, which are no lines");
   }
+  contours.tile_side = options.tiles.value_or(0);
+  if (!options.tiles) refuse_pattern(options.output);
   if (!options.levels.empty()) {
     refuse_given(*options.app, {"--interval", "--base", "--index"},
                  "with --levels, which names all heights");
@@ -82,6 +87,8 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
                     "highest, {}",
                     contours.lowest, contours.highest));
   }
+  if (options.tiles) progress.say(fmt::format("{} tiles with lines", contours.files));
+  warn_of_other_tiles(contours.other_files, options.output, progress);
   progress.say(fmt::format("{} vertices, {} triangles; {} {} of {} points, {:.2f} s",
                            report.mesh.vertices, report.mesh.simplices,
                            options.bands ? contours.polygons : contours.lines,
@@ -104,6 +111,7 @@ int run(const ContourCommandOptions& options) {
                       {"short_lines", contours->report().short_lines},
                       {"polygons", contours->report().polygons},
                       {"points", contours->report().points},
+                      {"files", contours->report().files},
                       {"spilled_bytes", contours->report().spilled_bytes}};
   write_statistics(options, report, facts, {{"contours", lines}});
   return tell_skipped(report.skipped_files, progress);
@@ -115,7 +123,9 @@ Subcommand add_contour(CommandLine& root) {
   const auto options = std::make_shared<ContourCommandOptions>();
   CommandLine& app = root.add_subcommand("contour", "Draw lines of equal height");
   app.set_footer(kExamples);
-  app.add_option("-o,--output", options->output, "Vector file: " + vector_extensions(false))
+  app.add_option("-o,--output", options->output,
+                 "Vector file: " + vector_extensions(false) +
+                     "; of --tiles a pattern, like lines_{x}_{y}.gpkg")
       .required()
       .value_name("FILE")
       // It also permits longitude and latitude to be something else.
@@ -136,6 +146,9 @@ Subcommand add_contour(CommandLine& root) {
                     1)
       .value_name("N")
       .show_default();
+  take_positive_number(app.add_option("--tiles", options->tiles,
+                                      "Cut lines into files, squares of this side in x and y"))
+      .value_name("SIDE");
   take_positive_number(
       app.add_option("--min-length", options->min_length, "Leave out lines that are shorter"))
       .value_name("L");

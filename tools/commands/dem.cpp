@@ -15,6 +15,7 @@
 #include "tools/commands/dem_options.h"
 #include "tools/commands/run_statistics.h"
 #include "tools/commands/skipped_inputs.h"
+#include "tools/commands/tile_files.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/text_output.h"
 #include "tools/report/usage_error.h"
@@ -65,19 +66,12 @@ std::string why_empty(const DemCommandOptions& options, const DemReport& raster)
 }
 
 void say_tiles(const DemCommandOptions& options, const DemReport& raster, ProgressLine& progress) {
-  constexpr std::size_t kMostNamed = 3;
   progress.say(fmt::format(
       "{} tiles{}{}, {} of them before the end of the triangulation", raster.files,
       raster.empty_tiles == 0 ? "" : fmt::format(" and {} without data", raster.empty_tiles),
       raster.vrt.empty() ? "" : fmt::format(", put together by {}", raster.vrt),
       raster.files_during_run));
-  std::vector<std::string> others = raster.other_files;
-  if (others.empty()) return;
-  const std::size_t more = others.size() - std::min(others.size(), kMostNamed);
-  others.resize(others.size() - more);
-  progress.insist(fmt::format(
-      "warning: {}{} are called like tiles of {}, but this run has not written them",
-      fmt::join(others, ", "), more == 0 ? "" : fmt::format(" and {} more", more), options.output));
+  warn_of_other_tiles(raster.other_files, options.output, progress);
 }
 
 void say(const DemCommandOptions& options, const Report& report, const DemReport& raster,

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
 
+#include "tools/commands/tile_files.h"
 #include "tools/options/suggestion.h"
 #include "tools/report/usage_error.h"
 
@@ -101,13 +101,9 @@ void check_products(const DemCommandOptions& options, const std::vector<DemProdu
 
 /// Which files there are to be.
 void set_tiles(const DemCommandOptions& options, DemOptions& dem) {
-  const std::filesystem::path name = std::filesystem::path(options.output).filename();
   if (options.tiles.empty()) {
     refuse_given(*options.app, {"--vrt"}, "without --tiles, which a VRT puts together");
-    if (name.string().find("{x}") != std::string::npos) {
-      throw UsageError(
-          fmt::format("{}: {{x}} in a name is for tiles; give --tiles, too", options.output));
-    }
+    refuse_pattern(options.output);
     return;
   }
   dem.vrt = options.vrt;

@@ -19,6 +19,8 @@ namespace {
 
 /// The part of the memory that is for points of lines that are not complete.
 constexpr std::uint64_t kLineShare = 4;
+/// The part of these that is for pieces of lines that are.
+constexpr std::uint64_t kSquareShare = 4;
 
 const VectorFormat& format_of(const std::string& path) {
   if (const VectorFormat* const format = vector_format_of_path(path)) return *format;
@@ -64,6 +66,10 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
     throw InvalidArgument(fmt::format("{}: {} holds lines only; bands go to {}", path_,
                                       format_.title, "gpkg, shp or geojson"));
   }
+  if (options_.tile_side != 0) {
+    if (options_.bands) throw InvalidArgument("bands are not cut into tiles: lines are");
+    names_.emplace(path_, options_.tile_side);
+  }
   if (!writes_file_) return;
   check_can_create(disk(), path_);
   tell_lost_layers(format_, path_, context);
@@ -85,7 +91,8 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                .tolerance = {.smooth = options_.smooth.value_or(0),
                              .simplify = options_.simplify.value_or(0)},
                .finds_hull = options_.bands,
-               .memory = own_memory(context().memory())};
+               .memory = own_memory(context().memory()) / (names_ ? kSquareShare : 1) *
+                         (names_ ? kSquareShare - 1 : 1)};
   return *begin_again();
 }
 
@@ -93,7 +100,9 @@ BlockSink* ContourFile::begin_again() {
   report_ = {};
   writer_.reset();
   bands_.reset();
-  if (writes_file_) {
+  if (writes_file_ && names_) {
+    squares_.emplace(names_->side(), own_memory(context().memory()) / kSquareShare, *scratch_);
+  } else if (writes_file_) {
     file_.emplace(format_, layer_);
     if (options_.bands) bands_.emplace(levels_, *scratch_);
   } else {
@@ -134,12 +143,38 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
 void ContourFile::add(std::span<const Point<2>> points, std::int64_t level) {
   if (lines_) return lines_->add(points, level);
   if (bands_) return bands_->add_line(points, level);
+  if (squares_) return squares_->add(points, level);
+  add_line(file_->layer(), points, level);
+}
+
+void ContourFile::add_line(VectorLayer& layer, std::span<const Point<2>> points,
+                           std::int64_t level) {
   const double height = levels_.height(level);
   line_.clear();
   for (const Point<2>& point : points) line_.push_back({point[0], point[1], height});
-  file_->layer().add_line(
+  layer.add_line(
       {.points = line_, .elevation = height, .is_index = levels_.is_index(level, options_.index)});
   report_.points += points.size();
+}
+
+/// Returns the bytes of all files.
+std::uint64_t ContourFile::write_tiles() {
+  std::uint64_t bytes = 0;
+  std::vector<std::string> paths;
+  for (const GridSquare square : squares_->squares()) {
+    VectorLayerOptions layer = layer_;
+    layer.path = paths.emplace_back(names_->path(square));
+    VectorFile file(format_, std::move(layer));
+    squares_->for_each(square, [&](std::span<const Point<2>> points, std::int64_t level) {
+      add_line(file.layer(), points, level);
+    });
+    file.finish();
+    bytes += file.bytes();
+  }
+  report_.files = paths.size();
+  report_.other_files = names_->others_than(paths);
+  report_.spilled_bytes += squares_->spilled_bytes();
+  return bytes;
 }
 
 /// What has no level below or above ends at the least or the greatest height of the terrain.
@@ -187,9 +222,13 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
   report_.spilled_bytes = all.spilled_bytes + writer_->spilled_bytes();
   watch.begin("write", bands_ ? "polygons" : "lines");
   if (bands_) add_bands();
-  file_->finish();
   report.output_format = format_.name;
-  report.output_bytes = file_->bytes();
+  if (squares_) {
+    report.output_bytes = write_tiles();
+  } else {
+    file_->finish();
+    report.output_bytes = file_->bytes();
+  }
   report.write_seconds = watch.end(bands_ ? report_.polygons : report_.lines);
   report.left_out += writer_->left_out();
 }

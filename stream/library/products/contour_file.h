@@ -12,9 +12,11 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/vectors/vector_file.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/products/square_names.h"
 #include "stream/sinks/band_store.h"
 #include "stream/sinks/contour_writer.h"
 #include "stream/sinks/line_store.h"
+#include "stream/sinks/lines_by_square.h"
 
 namespace spillway::stream {
 
@@ -43,7 +45,9 @@ class ContourFile final : public OwnSink<ContourSink> {
   [[nodiscard]] bool keeps_coordinates(const MeshStart& start) const;
   void add(std::span<const Point<2>> points, std::int64_t level);
 
+  void add_line(VectorLayer& layer, std::span<const Point<2>> points, std::int64_t level);
   void add_bands();
+  [[nodiscard]] std::uint64_t write_tiles();
 
   std::string path_;
   const VectorFormat& format_;
@@ -52,10 +56,12 @@ class ContourFile final : public OwnSink<ContourSink> {
   std::shared_ptr<ScratchFolder> scratch_;
   VectorLayerOptions layer_;
   ContourSinkOptions contours_;
-  bool writes_file_;                ///< or another process does
-  std::optional<VectorFile> file_;  ///< of who writes it
-  std::optional<LineStore> lines_;  ///< of the others
-  std::optional<BandStore> bands_;  ///< of who writes bands
+  bool writes_file_;                      ///< or another process does
+  std::optional<VectorFile> file_;        ///< of who writes it
+  std::optional<SquareNames> names_;      ///< of tiles
+  std::optional<LinesBySquare> squares_;  ///< of who writes tiles
+  std::optional<LineStore> lines_;        ///< of the others
+  std::optional<BandStore> bands_;        ///< of who writes bands
   std::optional<ContourWriter> writer_;
   std::vector<WorldPoint> line_;
   ContourReport report_;

@@ -1,8 +1,10 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -52,6 +54,56 @@ TEST_F(Contour, DrawsClosedRingsWithTheirElevation) {
                 20 - height, 0.3);
   }
   EXPECT_EQ(rings, 4);  // at 2.5, 7.5, 12.5 and 17.5
+}
+
+TEST_F(Contour, CutsLinesIntoTilesThatHaveAllOfThem) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const auto length_of = [](const nlohmann::json& line) {
+    const auto& points = line["geometry"]["coordinates"];
+    double length = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      length += std::hypot(points[i][0].get<double>() - points[i - 1][0].get<double>(),
+                           points[i][1].get<double>() - points[i - 1][1].get<double>());
+    }
+    return length;
+  };
+  const std::string how = " --force-crs --interval 1 --stats stats.json -o ";
+  std::map<double, double> whole;
+  space.succeed("spillway contour cone.txt" + how + "one.geojson");
+  for (const auto& line : features(space, "one.geojson")) {
+    whole[line["properties"]["elevation"]] += length_of(line);
+  }
+  space.write("c_5_7.geojson", "");
+  const Result result =
+      space.run("spillway contour cone.txt --tiles 15" + how + "'c_{x}_{y}.geojson'");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("warning: c_5_7.geojson are called like tiles"));
+  EXPECT_EQ(nlohmann::json::parse(space.read("stats.json"))["contours"]["files"], 9);
+  std::map<double, double> tiles;
+  for (const int x : {0, 15, 30}) {
+    for (const int y : {0, 15, 30}) {
+      for (const auto& line : features(space, fmt::format("c_{}_{}.geojson", x, y))) {
+        tiles[line["properties"]["elevation"]] += length_of(line);
+        for (const auto& point : line["geometry"]["coordinates"]) {
+          EXPECT_TRUE(point[0] >= x && point[0] <= x + 15 && point[1] >= y && point[1] <= y + 15);
+          EXPECT_EQ(point[2], line["properties"]["elevation"]);
+        }
+      }
+    }
+  }
+  ASSERT_EQ(tiles.size(), whole.size());
+  for (const auto& [height, length] : whole) EXPECT_NEAR(tiles[height], length, 1e-4) << height;
+  space.succeed("mkdir a b");
+  space.succeed("spillway contour cone.txt --tiles 15 --threads 1 -q" + how + "'a/{x}_{y}.gpkg'");
+  space.succeed("spillway contour cone.txt --tiles 15 --tile-points 100 -q" + how +
+                "'b/{x}_{y}.gpkg'");
+  space.succeed("test \"$(ls a)\" = \"$(ls b)\"");
+  const auto refused = [this](const std::string& arguments) {
+    return space.run("spillway contour cone.txt --interval 1 " + arguments).err;
+  };
+  EXPECT_THAT(refused("-o a.gpkg --tiles 5"), HasSubstr("tile_{x}_{y}.gpkg"));
+  EXPECT_THAT(refused("-o 'a_{x}_{y}.gpkg'"), HasSubstr("give --tiles"));
+  EXPECT_THAT(refused("-o 'a_{x}_{y}.gpkg' --tiles 5 --bands"), HasSubstr("--tiles has no effect"));
 }
 
 TEST_F(Contour, DrawsTheSameOfPointsMeshesAndStreams) {

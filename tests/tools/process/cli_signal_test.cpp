@@ -196,7 +196,8 @@ TEST(Signals, WhileGdalWritesLeaveNothing) {
     const std::string& output = outputs[run % outputs.size()];
     const pid_t process = work.start(
         {"contour", "-q", "in.las", "-o", output, "--interval", "1", "--scratch-folder", "tmp"});
-    for (int i = 0; i < 2000 && !work.has_unfinished(output); ++i) {
+    // GDAL's folder is there, and not only the file by which an output is tried at the beginning.
+    for (int i = 0; i < 1000 && work.run("test -d " + output + ".*.part").exit_code != 0; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 50));

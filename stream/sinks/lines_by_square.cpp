@@ -1,0 +1,48 @@
+#include "stream/sinks/lines_by_square.h"
+
+#include "stream/sinks/line_store.h"
+
+namespace spillway::stream {
+
+void LinesBySquare::add(std::span<const Point<2>> points, std::int64_t level) {
+  cut_at_squares(points, side_, [&](GridSquare square, std::span<const Point<2>> piece) {
+    Packer& latest = squares_[square].latest;
+    const std::size_t before = latest.bytes().size();
+    latest.put(level);
+    latest.put_list(piece);
+    in_memory_ += latest.bytes().size() - before;
+  });
+  if (in_memory_ > memory_) spill();
+}
+
+void LinesBySquare::spill() {
+  if (!file_) file_ = scratch_.create("lines");
+  for (auto& [square, pieces] : squares_) {
+    const std::vector<std::byte> bytes = pieces.latest.take();
+    if (bytes.empty()) continue;
+    pieces.spilled.push_back({file_->size(), bytes.size()});
+    file_->append(bytes);
+  }
+  in_memory_ = 0;
+}
+
+std::vector<GridSquare> LinesBySquare::squares() const {
+  std::vector<GridSquare> squares;
+  for (const auto& [square, pieces] : squares_) squares.push_back(square);
+  return squares;
+}
+
+void LinesBySquare::for_each(
+    GridSquare square,
+    const std::function<void(std::span<const Point<2>>, std::int64_t)>& take) const {
+  const Pieces& pieces = squares_.at(square);
+  std::vector<std::byte> bytes;
+  for (const Batch& batch : pieces.spilled) {
+    bytes.resize(batch.bytes);
+    file_->read(batch.offset, bytes);
+    LineStore::for_each(bytes, take);
+  }
+  LineStore::for_each(pieces.latest.bytes(), take);
+}
+
+}  // namespace spillway::stream
