@@ -150,8 +150,18 @@ std::set<std::string> traits_of_any(const DemOptions& options) {
     if (traits.by_ground) names.insert("by_ground");
     if (traits.by_azimuth) names.insert("by_azimuth");
     if (traits.by_altitude) names.insert("by_altitude");
+    if (traits.fills_voids) names.insert("fills_voids");
+    if (!traits.of_points) names.insert("of_triangles");
   }
   return names;
+}
+
+/// Of a product by its name, or of a percentile.
+DemBand band_of(const std::string& word) {
+  if (const auto band = dem_band_of(word)) return *band;
+  std::vector<std::string> names = dem_product_names();
+  names.back() = "p95";  // for all percentiles
+  return {choice_of<DemProduct>(word, names, "product")};
 }
 
 void bind_product_options(py::module_& module) {
@@ -161,16 +171,22 @@ void bind_product_options(py::module_& module) {
           "products",
           [](const DemOptions& options) {
             Words words;
+            auto percent = options.percentiles.begin();
             for (const DemProduct product : options.products) {
-              words.push_back(dem_product_names().at(static_cast<std::size_t>(product)));
+              const bool is_percentile = product == DemProduct::kPercentile;
+              words.push_back(name_of({product, is_percentile ? *percent++ : 0}));
             }
             return words;
           },
           [](DemOptions& options, const Words& words) {
             options.products.clear();
+            options.percentiles.clear();
             for (const std::string& word : words) {
-              options.products.push_back(
-                  choice_of<DemProduct>(word, dem_product_names(), "product"));
+              const DemBand band = band_of(word);
+              options.products.push_back(band.product);
+              if (band.product == DemProduct::kPercentile) {
+                options.percentiles.push_back(band.percentile);
+              }
             }
           })
       .def_readwrite("resolution", &DemOptions::resolution)
@@ -183,6 +199,7 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("vrt", &DemOptions::vrt)
       .def_readwrite("foreign_crs", &DemOptions::foreign_crs)
       .def_readwrite("compute_edges", &DemOptions::compute_edges)
+      .def_readwrite("fill_voids", &DemOptions::fill_voids)
       .def_readwrite("azimuth", &DemOptions::azimuth)
       .def_readwrite("altitude", &DemOptions::altitude)
       .def_readwrite("z_factor", &DemOptions::z_factor)

@@ -49,6 +49,9 @@ void add_raster(const DemReport& raster, py::dict& statistics) {
   statistics["other_files"] = raster.other_files;
   statistics["closed_tiles"] = raster.closed_tiles;
   statistics["spilled_pixel_bytes"] = raster.spilled_bytes;
+  statistics["points_in_pixels"] = raster.points_in_pixels;
+  statistics["pixels_with_points"] = raster.pixels_with_points;
+  statistics["filled_pixels"] = raster.filled_pixels;
 }
 
 py::dict dem(Run& run, const MeshOrigin& origin, const std::string& output,

@@ -25,7 +25,8 @@ enum class ThinChoice {
 };
 
 /// What a pixel of a DEM can tell of the terrain at its centre: by the heights of the pixel and its
-/// eight neighbours, where nothing else is said.
+/// eight neighbours, where nothing else is said. Those from kMin on are of all points in the pixel,
+/// by their z, points of equal x and y among them.
 enum class DemProduct {
   kHeight,            ///< of the triangle there
   kSlope,             ///< steepness in degrees
@@ -42,6 +43,12 @@ enum class DemProduct {
   kFacetAspect,       ///< where that falls to
   kFacetHillshade,    ///< its brightness, 0 to 255
   kDensity,           ///< vertices of the mesh in the pixel
+  kMin,               ///< the lowest point
+  kMax,               ///< the highest one
+  kMean,              ///< the mean height
+  kCount,             ///< how many points; 0 where there are none
+  kStddev,            ///< standard deviation of the heights, of the points as the whole population
+  kPercentile,        ///< the height that a percentage is not above (DemOptions::percentiles)
 };
 
 /// How the gradient at a pixel comes from its neighbours.

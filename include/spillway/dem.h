@@ -15,8 +15,19 @@
 
 namespace spillway {
 
-/// "height", "slope", ...: in the order of DemProduct.
+/// "height", "slope", ...: in the order of DemProduct. The last one, "percentile", is the kind of
+/// bands that are called "p50", "p95", ...
 SPILLWAY_API const std::vector<std::string>& dem_product_names();
+
+/// A band: its product, and of kPercentile the number of 0 to 100.
+struct DemBand {
+  DemProduct product = DemProduct::kHeight;
+  double percentile = 0;
+};
+
+/// A band by its name, which is that of its product, or "p95" and the like; nothing for others.
+SPILLWAY_API std::optional<DemBand> dem_band_of(const std::string& name);
+SPILLWAY_API std::string name_of(const DemBand& band);
 
 /// What a product depends on.
 struct DemProductTraits {
@@ -25,6 +36,8 @@ struct DemProductTraits {
   bool by_ground = false;      ///< how heights compare with distances: the factor of z
   bool by_azimuth = false;     ///< where the light comes from
   bool by_altitude = false;    ///< how high it stands; such products are shades, and fit bytes
+  bool of_points = false;      ///< all points in the pixel, and no triangle
+  bool fills_voids = false;    ///< by DemOptions::fill_voids
 };
 
 SPILLWAY_API DemProductTraits traits_of(DemProduct product);
@@ -44,6 +57,11 @@ struct DemOptions {
   GradientMethod gradient = GradientMethod::kHorn;
   /// Products of neighbours also where some of these have no data, or lie beyond the raster.
   bool compute_edges = false;
+  /// Of kPercentile: one number of 0 to 100 for each time that it is among the products, in order.
+  std::vector<double> percentiles{};
+  /// Give lowest, highest and mean heights and percentiles of pixels without points the height of
+  /// the triangle at the centre, where there is one: `max_edge` tells how far it may reach.
+  bool fill_voids = false;
   /// Of products that compare heights with distances: what heights are multiplied by, to have the
   /// unit of x and y. Nothing: by what the coordinate system tells of its units.
   std::optional<double> z_factor{};
@@ -81,6 +99,9 @@ struct DemReport {
   std::vector<std::string> other_files{};
   std::uint64_t closed_tiles = 0;  ///< of 256 x 256 pixels, complete before all triangles came
   std::uint64_t spilled_bytes = 0;
+  std::uint64_t points_in_pixels = 0;    ///< points that products of points tell of
+  std::uint64_t pixels_with_points = 0;  ///< in which these are
+  std::uint64_t filled_pixels = 0;       ///< others, which fill_voids has filled
 };
 
 /// A GeoTIFF in the making: a sink of triangulate() and convert(). A program that calls it itself
@@ -94,8 +115,9 @@ class SPILLWAY_API DemSink : public MeshSink {
 /// A GeoTIFF, or one for each tile, interpolated linearly within the triangles. It gets its name when
 /// it is complete: tiles that are so stay if the run fails later. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
 /// options that cannot be, kOutOfBudget for a memory limit below 64 MiB, kInputOutput; begin()
-/// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, and kTooLarge
-/// for a raster that is large because of points far away.
+/// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, kTooLarge for a
+/// raster that is large because of points far away, and kInvalidArgument for products of points of
+/// what is a mesh. If no product needs triangles, triangulate() makes none.
 SPILLWAY_API std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
                                                  const Context& context);
 

@@ -66,6 +66,7 @@ def dem(
     z_factor: float | None = None,
     gradient: str | None = None,
     compute_edges: bool = False,
+    fill_voids: bool = False,
     mesh_format: str | None = None,
     **options: Unpack[DemOptions],
 ) -> Raster:
@@ -89,6 +90,7 @@ def dem(
     z_factor: float | None = None,
     gradient: str | None = None,
     compute_edges: bool = False,
+    fill_voids: bool = False,
     tiles: float | PathLike | None = None,
     vrt: PathLike | None = None,
     nodata: float | None = None,
@@ -118,6 +120,7 @@ def dem(
     z_factor: float | None = None,
     gradient: str | None = None,
     compute_edges: bool = False,
+    fill_voids: bool = False,
     tiles: float | PathLike | None = None,
     vrt: PathLike | None = None,
     nodata: float | None = None,
@@ -152,7 +155,8 @@ def dem(
         ``"height"``, ``"slope"``, ``"aspect"``, ``"hillshade"``, ``"multi-hillshade"``,
         ``"roughness"``, ``"tri"``, ``"tpi"``, ``"curvature"``, ``"profile-curvature"``,
         ``"plan-curvature"``, ``"facet-slope"``, ``"facet-aspect"``, ``"facet-hillshade"`` or
-        ``"density"``; several are bands.
+        ``"density"``; of all points in a pixel ``"min"``, ``"max"``, ``"mean"``, ``"count"``,
+        ``"stddev"`` or a percentile, ``"p0"`` to ``"p100"``; several are bands.
     ground_class : int or sequence of int, optional
         Of ``product="chm"``, heights above the ground: points of these classes are the ground; 2 by
         default.
@@ -165,6 +169,9 @@ def dem(
         How slope, aspect and hillshade come from a pixel's neighbours.
     compute_edges : bool, optional
         Make slopes and the like also where neighbours have no data.
+    fill_voids : bool, optional
+        Give min, max, mean and percentiles of pixels without points the height of the triangle at
+        the centre, where there is one (`max_edge`).
     tiles : float or path, optional
         Cut the raster into files: squares of this side, with ``{x}`` and ``{y}`` in their names, or
         by the polygons of this vector file, with fields of theirs in braces.
@@ -206,6 +213,7 @@ def dem(
         "z_factor": z_factor,
         "gradient": gradient,
         "compute_edges": compute_edges,
+        "fill_voids": fill_voids,
     }
     _check_products(how, surface, options)
     if like is None:
@@ -456,7 +464,21 @@ _TRAIT_OF_OPTION = {
     "z_factor": ("by_ground", "slope, aspect, hillshade or curvature"),
     "gradient": ("by_gradient", "slope, aspect or hillshade"),
     "compute_edges": ("of_neighbours", "slope or another product of a pixel's neighbours"),
+    "fill_voids": ("fills_voids", "min, max, mean or a percentile"),
 }
+
+# Of these nothing is left where products are of points alone.
+_OF_TRIANGLES = [
+    "heights",
+    "max_edge",
+    "tile_points",
+    "leaf_points",
+    "division",
+    "children",
+    "kernel",
+    "resume",
+    "checkpoint_every",
+]
 
 
 def _check_products(how: _spillway.DemOptions, surface: dict[str, Any], options: Any) -> None:
@@ -464,6 +486,8 @@ def _check_products(how: _spillway.DemOptions, surface: dict[str, Any], options:
     for name, (trait, products) in _TRAIT_OF_OPTION.items():
         if trait not in how.traits:
             refuse(surface, [name], f"without {products} among the products")
+    if "of_triangles" not in how.traits and not surface["fill_voids"]:
+        refuse(options, _OF_TRIANGLES, "on products of points alone, which need no triangles")
     if how.products == ["density"]:
         refuse(options, ["heights", "max_edge"], "on density, which counts vertices")
 

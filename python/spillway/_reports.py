@@ -113,6 +113,9 @@ class RasterReport(RunReport):
     other_files: list[str]
     closed_tiles: int
     spilled_pixel_bytes: int
+    points_in_pixels: int
+    pixels_with_points: int
+    filled_pixels: int
 
     def _summary(self) -> str:
         return (

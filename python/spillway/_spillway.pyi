@@ -124,6 +124,7 @@ class DemOptions:
     foreign_crs: bool
     gradient: str
     compute_edges: bool
+    fill_voids: bool
     azimuth: float
     altitude: float
     z_factor: float | None

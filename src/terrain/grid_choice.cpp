@@ -26,12 +26,6 @@ double pixels_for(double length, double resolution) {
   return std::max(1.0, is_whole ? whole : std::ceil(pixels));
 }
 
-std::optional<std::uint32_t> pixel_of(double distance, double resolution, std::uint32_t count) {
-  const double pixels = distance / resolution;
-  if (!(pixels >= 0) || pixels > count) return std::nullopt;
-  return std::min(static_cast<std::uint32_t>(pixels), count - 1);
-}
-
 }  // namespace
 
 PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent) {
@@ -56,14 +50,6 @@ PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent) {
   }
   return {box.lo[0], box.hi[1], resolution, static_cast<std::uint32_t>(columns),
           static_cast<std::uint32_t>(rows)};
-}
-
-std::optional<std::uint32_t> column_of(const PixelGrid& grid, double x) {
-  return pixel_of(x - grid.west, grid.resolution, grid.columns);
-}
-
-std::optional<std::uint32_t> row_of(const PixelGrid& grid, double y) {
-  return pixel_of(grid.north - y, grid.resolution, grid.rows);
 }
 
 }  // namespace spillway::terrain

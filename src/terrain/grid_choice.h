@@ -20,9 +20,4 @@ struct GridRequest {
 /// the raster's size, if there would be more rows or columns than GeoTIFF can count.
 PixelGrid choose_grid(const GridRequest& request, const Box<2>& extent);
 
-/// The column (row) of the pixel that a coordinate lies in: pixels hold their western (northern)
-/// edges. What lies on the far edge of the raster belongs to its last pixel. Nothing outside.
-std::optional<std::uint32_t> column_of(const PixelGrid& grid, double x);
-std::optional<std::uint32_t> row_of(const PixelGrid& grid, double y);
-
 }  // namespace spillway::terrain

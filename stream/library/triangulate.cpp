@@ -13,6 +13,7 @@
 #include "stream/library/meshes/program_sink.h"
 #include "stream/library/own_parts.h"
 #include "stream/library/points/program_points.h"
+#include "stream/library/points_alone.h"
 #include "stream/library/resumable_run.h"
 #include "stream/library/run.h"
 #include "stream/pipeline.h"
@@ -142,6 +143,15 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   run.engine.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
   target->check_attributes(run.points.offered);
+  // Processes share points out as they triangulate them.
+  if (!target->wants_simplices() && executor == nullptr) {
+    if (!options.resume_folder.empty()) {
+      throw InvalidArgument(
+          "a run of products of points alone triangulates nothing, and cannot go "
+          "on: leave the folder to resume out");
+    }
+    return take_points_alone(run);
+  }
   if (!options.resume_folder.empty()) run.identity = identity_of(run, *points);
   Report report;
   if (executor != nullptr) {

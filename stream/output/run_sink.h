@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/box.h"
+#include "src/geometry/framed_point.h"
 
 namespace spillway::stream {
 
@@ -26,6 +28,16 @@ class RunSink {
   virtual bool extent_told(const Box<2>& /*extent*/, std::uint64_t /*vertices*/) { return false; }
   /// After extent_told() and some blocks: whether it makes no difference that this is the extent.
   virtual bool extent_holds(const Box<2>& /*extent*/) { return false; }
+
+  /// Whether simplices are wanted. If not, points may come without any: take_points() alone.
+  [[nodiscard]] virtual bool wants_simplices() const { return true; }
+
+  /// Whether take_points() is wanted.
+  [[nodiscard]] virtual bool wants_points() const { return false; }
+  /// Some of the points, in the coordinates of blocks: each once, those that are one vertex, too.
+  /// After the extent is told, by many threads at once and in any order, some of them before and
+  /// some after the blocks that they are in.
+  virtual void take_points(std::span<const LatticePoint> /*points*/) {}
 
   /// After some blocks, or none: all of them are void, and the mesh comes once more, after
   /// extent_known() if that is wanted. Returns where blocks go now; nullptr if they cannot be taken

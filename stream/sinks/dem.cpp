@@ -21,6 +21,7 @@ namespace spillway::stream {
 namespace {
 
 static_assert(RasterStore::kSide == kRasterTile, "tiles are written as they are kept");
+static_assert(PixelPoints::kTilePixels == RasterStore::kTilePixels, "of the same tiles");
 
 /// Triangles and vertices that one task takes.
 constexpr std::size_t kTrianglesAtATime = 4096;
@@ -93,12 +94,14 @@ struct Dem::Work {
 Dem::Dem(DemSinkOptions options, const std::optional<IntegerLattice>& lattice,
          ScratchFolder& scratch)
     : options_(std::move(options)),
-      layers_(layers_of(options_.products)),
+      layers_(layers_of(options_.products, options_.fill_voids)),
       lattice_(lattice),
       on_lattice_(lattice && lattice->scale[0] > 0 && lattice->scale[1] > 0),
+      of_points_(are_of_points(options_.products)),
       light_direction_(direction_of(options_.light)),
       scratch_(scratch) {
-  const std::uint64_t least = RasterStore::least_memory(layers_.size(), options_.threads);
+  std::uint64_t least = RasterStore::least_memory(layers_.size(), options_.threads);
+  if (of_points_) least = 2 * std::max(least, PixelPoints::kLeastMemory);
   if (options_.memory < least) {
     throw TooSmallLimit(
         fmt::format("the memory limit is too small: {} of it are for pixels, and {} threads "
@@ -152,13 +155,18 @@ void Dem::begin(const PixelGrid& grid) {
   std::uint64_t in_work = 0;
   if (writes_early()) {
     closed = [this](std::uint64_t number) { note_closed(number); };
-    in_work = DemOutput::kLeastSlots * DemOutput::slot_bytes(options_.products, layers_);
+    in_work = DemOutput::kLeastSlots * DemOutput::slot_bytes(options_, layers_);
   }
   left_out_ = 0;
+  points_in_pixels_ = pixels_with_points_ = filled_pixels_ = 0;
   states_ = std::vector<SheetState>(sheets_.size());
   final_.clear();
-  store_.emplace(std::move(rules), options_.memory - std::min(options_.memory / 2, index + in_work),
-                 scratch_, std::move(wanted), std::move(closed));
+  const std::uint64_t taken = std::min(options_.memory / 2, index + in_work);
+  const std::uint64_t for_points = point_memory(taken);
+  store_.emplace(std::move(rules), options_.memory - taken - for_points, scratch_,
+                 std::move(wanted), std::move(closed));
+  cells_.emplace(grid, on_lattice_ ? lattice_ : std::nullopt);
+  if (of_points_) points_.emplace(for_points, scratch_);
 }
 
 void Dem::note_closed(std::uint64_t stored_tile) {
@@ -189,10 +197,20 @@ void Dem::hand_on_final_sheets() {
   is_handing_on_ = false;
 }
 
-/// Vertices of a pixel may come after all triangles at its centre. Triangles that are mapped to
+/// Of what an index of pixels leaves: half of it beside pixels that are painted, else all.
+std::uint64_t Dem::point_memory(std::uint64_t index) const {
+  if (!of_points_) return 0;
+  const std::uint64_t left = options_.memory - index;
+  return layers_.empty() ? left : left / 2;
+}
+
+/// Heights rise with the lattice's integers.
+bool Dem::heights_on_lattice() const { return lattice_ && lattice_->scale[2] > 0; }
+
+/// Points of a pixel may come after all triangles at its centre. Triangles that are mapped to
 /// output coordinates may overlap by roundings.
 bool Dem::closes_tiles() const {
-  return options_.closes_tiles && (on_lattice_ || !lattice_) &&
+  return options_.closes_tiles && !of_points_ && (on_lattice_ || !lattice_) &&
          std::ranges::find(layers_, DemProduct::kDensity) == layers_.end();
 }
 
@@ -378,39 +396,54 @@ void Dem::count(std::span<const PlacedPoint> vertices) {
   const auto found = std::ranges::find(layers_, DemProduct::kDensity);
   if (found == layers_.end()) return;
   const auto band = static_cast<std::size_t>(found - layers_.begin());
-  const std::uint32_t margin = sheets_.margin();
   const auto count_some = [&](std::size_t /*grain*/, std::size_t begin, std::size_t end) {
     Work work(*store_, layers_.size());
     for (const PlacedPoint& vertex : vertices.subspan(begin, end - begin)) {
-      const auto column =
-          column_of(grid(), on_lattice_ ? lattice_->to_world(0, vertex[0]) : vertex[0]);
-      const auto row = row_of(grid(), on_lattice_ ? lattice_->to_world(1, vertex[1]) : vertex[1]);
+      const auto column = cells_->column(vertex[0]);
+      const auto row = cells_->row(vertex[1]);
       if (!column || !row) continue;
-      sheets_.visit(*row + margin, *column + margin, *column + margin + 1,
-                    [&](std::size_t sheet, std::uint32_t, std::uint32_t) {
-                      const TileLayout& tiles = sheets_[sheet];
-                      const auto& [top, bottom, left, right] = tiles.window;
-                      if (*row < top || *row >= bottom || *column < left || *column >= right) {
-                        return;  // in its ring
-                      }
-                      const std::uint32_t r = *row - top;
-                      const std::uint32_t c = *column - left;
-                      float* const pixels = work.hand.tile(tiles.stored(tiles.number(r, c)));
-                      put_pixel(
-                          pixels[band * RasterStore::kTilePixels +
-                                 std::size_t{r % kRasterTile} * kRasterTile + c % kRasterTile],
-                          1, PixelRule::kSum, true);
-                    });
+      sheets_.visit_pixel(*row, *column, [&](std::size_t sheet, std::uint32_t r, std::uint32_t c) {
+        const TileLayout& tiles = sheets_[sheet];
+        float* const pixels = work.hand.tile(tiles.stored(tiles.number(r, c)));
+        put_pixel(pixels[band * RasterStore::kTilePixels +
+                         std::size_t{r % kRasterTile} * kRasterTile + c % kRasterTile],
+                  1, PixelRule::kSum, true);
+      });
     }
   };
   isolated([&] { parallel_for(vertices.size(), kVerticesAtATime, count_some); });
 }
 
+void Dem::take_points(std::span<const LatticePoint> points) {
+  std::vector<PointInPixel> inside;
+  inside.reserve(points.size());
+  for (const LatticePoint& point : points) {
+    const PlacedPoint place = placed(point);
+    const auto column = cells_->column(place[0]);
+    const auto row = cells_->row(place[1]);
+    if (!column || !row) continue;
+    // No zero has a sign, which would make the order of equal heights matter.
+    const double z = (heights_on_lattice() ? point[2] : place[2]) + 0.0;
+    sheets_.visit_pixel(*row, *column, [&](std::size_t sheet, std::uint32_t r, std::uint32_t c) {
+      const TileLayout& tiles = sheets_[sheet];
+      const std::uint32_t in_tile = r % kRasterTile * kRasterTile + c % kRasterTile;
+      inside.push_back({tiles.stored(tiles.number(r, c)) * PixelPoints::kTilePixels + in_tile, z});
+    });
+  }
+  points_->add(inside);
+}
+
+std::uint64_t Dem::spilled_bytes() const {
+  return store_->spilled_bytes() + (points_ ? points_->spilled_bytes() : 0);
+}
+
 RasterOptions Dem::raster_options(std::size_t sheet) const {
   RasterOptions raster;
   raster.grid.pixels = sheets_.grid_of(sheet);
+  auto percent = options_.percentiles.begin();
   for (const DemProduct product : options_.products) {
-    raster.bands.push_back(dem_product_names()[static_cast<std::size_t>(product)]);
+    const bool is_percentile = product == DemProduct::kPercentile;
+    raster.bands.push_back(name_of({product, is_percentile ? *percent++ : 0}));
     // The mean of 359 and 1 is no direction.
     if (product == DemProduct::kAspect || product == DemProduct::kFacetAspect) {
       raster.averaged_overviews = false;
@@ -434,6 +467,7 @@ void Dem::save(StateWriter& state) {
     state(closed, written, sheet.content.pixels_with_data, sheet.content.is_empty);
   }
   store_->save(state);
+  if (points_) points_->save(state);
 }
 
 void Dem::restore(StateReader& state) {
@@ -454,6 +488,7 @@ void Dem::restore(StateReader& state) {
     if (writes_early() && !written && closed == sheets_[s].stored_count()) final_.push_back(s);
   }
   store_->restore(state);
+  if (points_) points_->restore(state);
 }
 
 SheetContent Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
@@ -461,12 +496,22 @@ SheetContent Dem::write(Raster& raster, const std::function<void(std::uint64_t p
   SheetState& state = states_[sheet];
   state.written = true;
   // All painted, the pixels have twice their memory: the triangulation, which had more, is done.
-  const std::uint64_t slots =
-      writes_early() ? DemOutput::kLeastSlots
-                     : 2 * options_.memory / DemOutput::slot_bytes(options_.products, layers_);
+  const std::uint64_t slots = writes_early()
+                                  ? DemOutput::kLeastSlots
+                                  : 2 * options_.memory / DemOutput::slot_bytes(options_, layers_);
   DemOutput output(options_, layers_, sheets_[sheet], sheets_.outline(sheet), *store_,
                    std::clamp<std::size_t>(slots, DemOutput::kLeastSlots, options_.threads + 2));
+  std::optional<PointBands> bands;
+  if (points_) {
+    bands.emplace(options_, *points_, heights_on_lattice() ? lattice_ : std::nullopt, scratch_);
+    output.add_points(*bands);
+  }
   state.content = output.write(raster, progress, others);
+  if (bands) {
+    points_in_pixels_ += bands->points();
+    pixels_with_points_ += bands->pixels();
+  }
+  filled_pixels_ += output.filled_pixels();
   return state.content;
 }
 

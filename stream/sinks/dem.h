@@ -15,10 +15,12 @@
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
+#include "src/terrain/pixel_cells.h"
 #include "src/terrain/pixel_centres.h"
 #include "src/terrain/pixel_values.h"
 #include "stream/sinks/dem_output.h"
 #include "stream/sinks/dem_sink_options.h"
+#include "stream/sinks/pixel_points.h"
 #include "stream/sinks/raster_sheets.h"
 #include "stream/sinks/raster_store.h"
 
@@ -51,6 +53,9 @@ class Dem {
   /// Counts vertices for the density. By any number of threads at once.
   void count(std::span<const PlacedPoint> vertices);
 
+  /// Takes points as they come, for products of points. By any number of threads at once.
+  void take_points(std::span<const LatticePoint> points);
+
   [[nodiscard]] const PixelGrid& grid() const { return sheets_.raster(); }
   [[nodiscard]] const RasterSheets& sheets() const { return sheets_; }
   [[nodiscard]] RasterOptions raster_options(std::size_t sheet = 0) const;
@@ -67,6 +72,10 @@ class Dem {
     return states_[sheet].content;
   }
 
+  /// The points that have come, as they lie in pixels; null if no product is of points. Those that
+  /// another Dem of the same grid has taken may be added before write().
+  [[nodiscard]] PixelPoints* points() { return points_ ? &*points_ : nullptr; }
+
   /// For another Dem of the same grid: the tiles that are not empty, in ascending order, and one of
   /// them, which is forgotten.
   [[nodiscard]] std::vector<std::uint64_t> tiles() const { return store_->tiles(); }
@@ -81,7 +90,11 @@ class Dem {
   [[nodiscard]] std::uint64_t pixels_with_data() const;
   /// Triangles with too long an edge.
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
-  [[nodiscard]] std::uint64_t spilled_bytes() const { return store_->spilled_bytes(); }
+  [[nodiscard]] std::uint64_t spilled_bytes() const;
+  /// Points in pixels, pixels that have some, and pixels without that were filled; after write().
+  [[nodiscard]] std::uint64_t points_in_pixels() const { return points_in_pixels_; }
+  [[nodiscard]] std::uint64_t pixels_with_points() const { return pixels_with_points_; }
+  [[nodiscard]] std::uint64_t filled_pixels() const { return filled_pixels_; }
   /// Tiles that were closed before write().
   [[nodiscard]] std::uint64_t closed_tiles() const { return store_->closed_tiles(); }
 
@@ -102,6 +115,8 @@ class Dem {
   void paint_ring(const TileLayout& tiles, PixelRun& run, const TrianglePlane& plane, Work& work);
   void paint_large(const Triangle& canonical, const PixelWindow& whole);
   [[nodiscard]] bool closes_tiles() const;
+  [[nodiscard]] std::uint64_t point_memory(std::uint64_t index) const;
+  [[nodiscard]] bool heights_on_lattice() const;
   [[nodiscard]] bool writes_early() const { return closes_tiles() && options_.sheet_is_final; }
   void note_closed(std::uint64_t stored_tile);
   void hand_on_final_sheets();
@@ -110,6 +125,7 @@ class Dem {
   const std::vector<DemProduct> layers_;  ///< what is painted
   const std::optional<IntegerLattice> lattice_;
   const bool on_lattice_;  ///< triangles are painted on it
+  const bool of_points_;   ///< a product is
   const Point<3> light_direction_;
   ScratchFolder& scratch_;
   RasterSheets sheets_;
@@ -118,7 +134,12 @@ class Dem {
   std::deque<std::size_t> final_;  ///< sheets, not written yet; guarded by final_mutex_
   bool is_handing_on_ = false;     ///< likewise
   std::optional<PixelCentres> centres_;
+  std::optional<PixelCells> cells_;
   std::optional<RasterStore> store_;
+  std::optional<PixelPoints> points_;
+  std::uint64_t points_in_pixels_ = 0;
+  std::uint64_t pixels_with_points_ = 0;
+  std::uint64_t filled_pixels_ = 0;
   std::atomic<std::uint64_t> left_out_ = 0;
 };
 

@@ -51,17 +51,25 @@ void fill(std::span<const float> pixels, std::span<float> framed) {
   }
 }
 
+bool is_painted(DemProduct product) {
+  return !traits_of(product).of_neighbours && !traits_of(product).of_points;
+}
+
 }  // namespace
 
 bool has_neighbours(const std::vector<DemProduct>& products) {
   return std::ranges::any_of(products, [](DemProduct one) { return traits_of(one).of_neighbours; });
 }
 
-std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products) {
+bool are_of_points(const std::vector<DemProduct>& products) {
+  return std::ranges::any_of(products, [](DemProduct one) { return traits_of(one).of_points; });
+}
+
+std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products, bool fill_voids) {
   std::vector<DemProduct> layers;
-  std::ranges::copy_if(products, std::back_inserter(layers),
-                       [](DemProduct one) { return !traits_of(one).of_neighbours; });
-  if (has_neighbours(products) && std::ranges::find(layers, DemProduct::kHeight) == layers.end()) {
+  std::ranges::copy_if(products, std::back_inserter(layers), is_painted);
+  if ((fill_voids || has_neighbours(products)) &&
+      std::ranges::find(layers, DemProduct::kHeight) == layers.end()) {
     layers.push_back(DemProduct::kHeight);
   }
   return layers;
@@ -75,6 +83,7 @@ struct DemOutput::Slot {
   std::vector<float> framed;  ///< heights
   std::vector<float> bands;
   SheetContent content;
+  std::uint64_t filled = 0;
 };
 
 DemOutput::DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
@@ -130,9 +139,11 @@ void DemOutput::add_ring(std::uint64_t tile, std::span<float> framed) const {
   }
 }
 
-std::uint64_t DemOutput::slot_bytes(const std::vector<DemProduct>& products,
+std::uint64_t DemOutput::slot_bytes(const DemSinkOptions& options,
                                     const std::vector<DemProduct>& layers) {
-  const std::size_t bands = layers.size() + (has_neighbours(products) ? products.size() + 1 : 0);
+  const bool are_layers_bands =
+      !has_neighbours(options.products) && !are_of_points(options.products);
+  const std::size_t bands = layers.size() + (are_layers_bands ? 0 : options.products.size() + 1);
   return bands * RasterStore::kTilePixels * sizeof(float);
 }
 
@@ -168,6 +179,12 @@ SheetContent DemOutput::write(Raster& raster,
     }
     if (slot.position >= delay) edges.frame(slot.position - delay, slot.framed);
   };
+  const auto tell_of_points = [&](std::size_t s) {
+    Slot& slot = in_work[s];
+    if (slot.position < delay) return;
+    slot.bands.resize(options_.products.size() * RasterStore::kTilePixels);
+    points_->make(tiles_.stored(slot.position - delay), slot.bands);
+  };
   const auto make = [&](std::size_t s) {
     Slot& slot = in_work[s];
     if (slot.position < delay) return;
@@ -186,10 +203,12 @@ SheetContent DemOutput::write(Raster& raster,
     done += std::uint64_t{rows} * columns;
     content.pixels_with_data += slot.content.pixels_with_data;
     content.is_empty = content.is_empty && slot.content.is_empty;
+    filled_ += slot.filled;
     progress(done);
   };
   std::vector<PipelineStep> steps = {{.in_order = false, .work = take}};
   if (delay > 0) steps.push_back({.in_order = true, .work = look_around});
+  if (points_ != nullptr) steps.push_back({.in_order = true, .work = tell_of_points});
   steps.push_back({.in_order = false, .work = make});
   steps.push_back({.in_order = true, .work = write_tile});
   run_pipeline(in_work.size(), source, steps);
@@ -198,18 +217,21 @@ SheetContent DemOutput::write(Raster& raster,
 
 void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
   const auto size = tiles_.size(tile);
-  if (derived_.empty()) {
+  if (are_layers_bands()) {
     slot.bands.swap(slot.layers);
   } else {
     slot.bands.resize(options_.products.size() * RasterStore::kTilePixels);
     std::size_t layer = 0;
     for (std::size_t b = 0; b < options_.products.size(); ++b) {
-      if (traits_of(options_.products[b]).of_neighbours) continue;
+      if (!is_painted(options_.products[b])) continue;
       std::ranges::copy(band_of(slot.layers, layer++), band_of(slot.bands, b).begin());
     }
-    fill(band_of(slot.layers, heights_), slot.framed);
-    add_ring(tile, slot.framed);
-    derive(tile, slot);
+    if (!derived_.empty()) {
+      fill(band_of(slot.layers, heights_), slot.framed);
+      add_ring(tile, slot.framed);
+      derive(tile, slot);
+    }
+    if (options_.fill_voids) fill_voids(size, slot);
   }
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
     finish_band(options_.products[b], size, band_of(slot.bands, b));
@@ -252,6 +274,26 @@ void DemOutput::cut_out(std::uint64_t tile, std::vector<float>& bands) const {
       column = std::max(column, std::clamp(end, left, left + columns) - left);
     }
     clear_to(columns);
+  }
+}
+
+/// Pixels without points get the height of the triangle at their centre.
+void DemOutput::fill_voids(TileLayout::Size size, Slot& slot) const {
+  const std::span<const float> heights = band_of(slot.layers, heights_);
+  slot.filled = 0;
+  bool is_first = true;
+  for (std::size_t b = 0; b < options_.products.size(); ++b) {
+    if (!traits_of(options_.products[b]).fills_voids) continue;
+    const std::span<float> band = band_of(slot.bands, b);
+    for (std::uint32_t row = 0; row < size.rows; ++row) {
+      const std::size_t first = std::size_t{row} * kRasterTile;
+      for (std::size_t i = first; i < first + size.columns; ++i) {
+        if (!std::isnan(band[i]) || std::isnan(heights[i])) continue;
+        band[i] = heights[i];
+        if (is_first) ++slot.filled;
+      }
+    }
+    is_first = false;
   }
 }
 
@@ -323,10 +365,10 @@ double DemOutput::value_of(DemProduct product, const Neighbourhood& z, const Poi
 void DemOutput::finish_band(DemProduct product, TileLayout::Size size,
                             std::span<float> band) const {
   const NodataNeighbourhood nodata(options_.nodata);
-  const bool density = product == DemProduct::kDensity;
+  const bool counts = product == DemProduct::kDensity || product == DemProduct::kCount;
   for (std::size_t i = 0; i < band.size(); ++i) {
     float& pixel = band[i];
-    if (density && std::isnan(pixel)) pixel = 0;
+    if (counts && std::isnan(pixel)) pixel = 0;
     const bool is_in = i / kRasterTile < size.rows && i % kRasterTile < size.columns;
     if (!is_in || !std::isfinite(pixel)) {
       pixel = options_.nodata;

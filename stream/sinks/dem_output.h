@@ -12,13 +12,18 @@
 #include "formats/gdal/raster.h"
 #include "src/terrain/neighbourhood.h"
 #include "stream/sinks/dem_sink_options.h"
+#include "stream/sinks/point_bands.h"
 #include "stream/sinks/raster_store.h"
 #include "stream/sinks/tile_layout.h"
 
 namespace spillway::stream {
 
-/// What has to be painted for products, layer by layer: those of neighbours need heights.
-std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products);
+/// What has to be painted for products, layer by layer: those of neighbours need heights, and so
+/// does filling voids.
+std::vector<DemProduct> layers_of(const std::vector<DemProduct>& products, bool fill_voids);
+
+/// Whether a product is of points.
+bool are_of_points(const std::vector<DemProduct>& products);
 
 /// Whether a product depends on neighbours.
 bool has_neighbours(const std::vector<DemProduct>& products);
@@ -44,15 +49,21 @@ class DemOutput {
   /// The least number of tiles in work, so that one is made while another is written.
   static constexpr std::size_t kLeastSlots = 2;
   /// What a tile in work takes, in bytes.
-  static std::uint64_t slot_bytes(const std::vector<DemProduct>& products,
+  static std::uint64_t slot_bytes(const DemSinkOptions& options,
                                   const std::vector<DemProduct>& layers);
 
   /// What it needs besides tiles of pixels, in bytes.
   static std::uint64_t bytes(const TileLayout& tiles);
 
+  /// Has these bands made, too; to be called before write() if a product is of points.
+  void add_points(PointBands& points) { points_ = &points; }
+
   /// As Dem::write().
   SheetContent write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
                      const OtherTiles& others);
+
+  /// Pixels without points that have got the height of a triangle; after write().
+  [[nodiscard]] std::uint64_t filled_pixels() const { return filled_; }
 
  private:
   struct Slot;
@@ -61,10 +72,13 @@ class DemOutput {
     std::size_t band;
   };
 
+  /// Bands are just what is painted.
+  [[nodiscard]] bool are_layers_bands() const { return derived_.empty() && points_ == nullptr; }
   void take_ring(const OtherTiles& others);
   void make_bands(std::uint64_t tile, Slot& slot) const;
   void add_ring(std::uint64_t tile, std::span<float> framed) const;
   void derive(std::uint64_t tile, Slot& slot) const;
+  void fill_voids(TileLayout::Size size, Slot& slot) const;
   [[nodiscard]] double value_of(DemProduct product, const Neighbourhood& z, const Point<2>& sides,
                                 const Gradient& gradient) const;
   void cut_out(std::uint64_t tile, std::vector<float>& bands) const;
@@ -77,7 +91,9 @@ class DemOutput {
   RasterStore& store_;
   const std::size_t slots_;
   std::vector<Derived> derived_;
-  std::size_t heights_ = 0;  ///< their layer, if anything is derived
+  std::size_t heights_ = 0;  ///< their layer, if anything is derived or filled
+  PointBands* points_ = nullptr;
+  std::uint64_t filled_ = 0;
   std::vector<float> ring_;  ///< heights
   const Point<3> light_direction_;
   const MultiShade multi_shade_;

@@ -1,5 +1,6 @@
 #include "stream/sinks/dem_shares.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -44,9 +45,38 @@ class TilesOfOther {
   std::size_t next_ = 0;
 };
 
+/// Points come before tiles, in messages of which the last one has none.
+void give_points(PixelPoints& points, ShareSender& sender) {
+  std::vector<PointInPixel> some;
+  const std::size_t most = std::max<std::size_t>(1, sender.message_bytes() / sizeof(some[0]));
+  const auto send = [&] {
+    Packer message;
+    message.put_list(some);
+    sender.send(message.take());
+    some.clear();
+  };
+  points.read_all([&](const PointInPixel& point) {
+    some.push_back(point);
+    if (some.size() == most) send();
+  });
+  if (!some.empty()) send();
+  send();
+}
+
+void take_points(OtherShares& others, PixelPoints& points) {
+  for (std::size_t other = 0; other < others.count(); ++other) {
+    while (const std::optional<std::vector<std::byte>> message = others.next(other)) {
+      const auto some = Unpacker(*message).take_list<std::vector<PointInPixel>>();
+      if (some.empty()) break;
+      points.add(some);
+    }
+  }
+}
+
 }  // namespace
 
-void give_tiles(Dem& dem, ShareSender& sender) {
+void give_share(Dem& dem, ShareSender& sender) {
+  if (dem.points() != nullptr) give_points(*dem.points(), sender);
   Packer message;
   for (const std::uint64_t tile : dem.tiles()) {
     message.put(tile);
@@ -56,8 +86,9 @@ void give_tiles(Dem& dem, ShareSender& sender) {
   if (!message.bytes().empty()) sender.send(message.take());
 }
 
-OtherTiles tiles_of_others(OtherShares& others) {
+OtherTiles take_shares(OtherShares& others, Dem& dem) {
   if (others.count() == 0) return nullptr;
+  if (dem.points() != nullptr) take_points(others, *dem.points());
   const auto inboxes = std::make_shared<std::vector<TilesOfOther>>();
   for (std::size_t other = 0; other < others.count(); ++other) inboxes->emplace_back(others, other);
   return [inboxes](std::uint64_t tile) {

@@ -30,8 +30,10 @@ struct DemSinkOptions {
   Light light{};
   GroundScale ground{};  ///< of products that compare heights with distances
   GradientMethod gradient = GradientMethod::kHorn;
-  bool compute_edges = false;        ///< also where neighbours of a pixel have no data
-  std::optional<double> max_edge{};  ///< leave out triangles with a longer edge, in output units
+  bool compute_edges = false;         ///< also where neighbours of a pixel have no data
+  std::vector<double> percentiles{};  ///< of kPercentile, each time that it is a product
+  bool fill_voids = false;            ///< of products of points, by heights of triangles
+  std::optional<double> max_edge{};   ///< leave out triangles with a longer edge, in output units
   float nodata = -9999;
   std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
   unsigned threads = 1;      ///< of which each may have a hand on the pixels

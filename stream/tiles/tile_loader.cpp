@@ -62,9 +62,13 @@ bool fit_together(const TileNode<D>& a, const TileNode<D>& b, std::size_t capaci
          !too_long(static_cast<double>(points), times, capacity);
 }
 
-/// Makes one point of a tile of points that are one vertex.
-StoredTile one_of(Tile tile, int dimension, Heights heights) {
-  EqualPoints all(dimension, heights);
+/// Makes one point of a tile of points that are one vertex, and tells of all of them.
+StoredTile one_of(Tile tile, const TileTreeOptions& options) {
+  EqualPoints all(options.dimension, *options.one_of_equal);
+  const auto add = [&](const PointsView& points) {
+    if (options.tell_equal) options.tell_equal(points);
+    all.add(points);
+  };
   visit_parts(
       std::move(tile),
       [&](TileSegment segment) {
@@ -73,12 +77,10 @@ StoredTile one_of(Tile tile, int dimension, Heights heights) {
         PointBlock points;
         while (reader.fetch(blocks)) {
           decode_all_points(blocks.bytes, blocks.where, points);
-          all.add(PointsView::of(points));
+          add(PointsView::of(points));
         }
       },
-      [&](PointBuffer& buffer) {
-        buffer.drain([&](const PointsView& points) { all.add(points); });
-      });
+      [&](PointBuffer& buffer) { buffer.drain([&](const PointsView& points) { add(points); }); });
   StoredTile stored;
   stored.points = 1;
   stored.left_out = all.count() - 1;
@@ -230,8 +232,7 @@ template <int D>
 StoredTile TileLoader::read(const TileNode<D>& node) {
   StageTimer timer(times_, Stage::kLoad, StepOrder::kInOrder);
   if (table_.options.one_of_equal && node.points > table_.capacity && node.box.lo == node.box.hi) {
-    return one_of(take(node.stored.front()), table_.options.dimension,
-                  *table_.options.one_of_equal);
+    return one_of(take(node.stored.front()), table_.options);
   }
   StoredTile stored;
   stored.points = node.points;

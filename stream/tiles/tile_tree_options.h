@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
+#include "stream/points/points_view.h"
 #include "stream/tiles/regions/region_plan.h"
 
 namespace spillway::stream {
@@ -32,6 +34,8 @@ struct TileTreeOptions {
   /// If set, loading makes one point of a tile of points that are one vertex, where they are more
   /// than a tile may have: which one, in the plane, this tells.
   std::optional<Heights> one_of_equal{};
+  /// Told of all points of such a tile.
+  std::function<void(const PointsView&)> tell_equal{};
 };
 
 }  // namespace spillway::stream

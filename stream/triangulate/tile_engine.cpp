@@ -39,6 +39,8 @@ TileEngine<D>::TileEngine(const ExpectedPoints& expected, BlockSink& blocks, con
       budget_(setup.budget),
       progress_(setup.progress),
       resting_(resting),
+      sink_(setup.sink),
+      tells_points_(D == 2 && setup.sink.wants_points()),
       plan_(plan_for(options_.threads, expected.plan != nullptr)),
       counts_(budget_),
       held_points_(budget_),
@@ -104,7 +106,11 @@ TileTreeOptions TileEngine<D>::tree_options(const ExpectedPoints& expected) {
           .plan = expected.plan,
           .largest_undivided = std::min(
               plan_.tile_room, largest_undivided<D>(budget_.limit(), options_.record_size)),
-          .one_of_equal = options_.asked.heights};
+          .one_of_equal = options_.asked.heights,
+          .tell_equal = tells_points_ ? std::function([this](const PointsView& points) {
+            sink_.take_points(points.points);
+          })
+                                      : nullptr};
 }
 
 template <int D>
@@ -369,6 +375,7 @@ void TileEngine<D>::work_off(Node& node) {
       held_points_.give_back(node.stored.held_bytes());
       TilePoints<D> points = tree_.loader().template decode<D>(std::move(node.stored));
       sample_.note(points.points);
+      if (tells_points_) tell_points(points);
       if (replace_indices_) replace_indices_(points.index);
       node.border =
           triangulate_tile<D>(context_, {std::move(points), node.outside, node.number}, task);
@@ -379,6 +386,25 @@ void TileEngine<D>::work_off(Node& node) {
     node.outside = {};
   } else {
     merge_node(node);
+  }
+}
+
+/// Tells the sink of a tile's points, unless all of them were told of when one was made of them.
+template <int D>
+void TileEngine<D>::tell_points(const TilePoints<D>& points) {
+  if constexpr (D == 2) {
+    if (points.left_out > 0) return;
+    constexpr std::size_t kPointsAtATime = 1 << 14;
+    parallel_for(points.points.size(), kPointsAtATime,
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                   std::vector<LatticePoint> some;
+                   some.reserve(end - begin);
+                   for (std::size_t i = begin; i < end; ++i) {
+                     const Point<2>& p = points.points[i];
+                     some.emplace_back(p[0], p[1], points.heights[i]);
+                   }
+                   sink_.take_points(some);
+                 });
   }
 }
 

@@ -155,6 +155,7 @@ class TileEngine : private DealingWatch {
   [[nodiscard]] std::uint64_t loaded_points(const Node& node) const;
   void load(Node& node, const Node* next);
   void work_off(Node& node);
+  void tell_points(const TilePoints<D>& points);
   void merge_above(Node& node);
   void give_up();
   void merge_node(Node& node);
@@ -166,6 +167,8 @@ class TileEngine : private DealingWatch {
   MemoryBudget& budget_;
   RunProgress& progress_;
   Resting& resting_;
+  RunSink& sink_;
+  const bool tells_points_;  ///< to the sink
   MemoryPlan plan_;
   StreamCounts counts_;
   ShrinkingLease held_points_;  ///< in memory when all are read, until their tile is loaded

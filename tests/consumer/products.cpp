@@ -75,6 +75,16 @@ void draw(const fs::path& folder, const spillway::Context& context) {
   std::printf("%u x %u pixels\n", dem->report().columns, dem->report().rows);
   expect(dem->report().pixels_with_data > 0, "the terrain has heights");
 
+  const auto all = spillway::open_points({folder / "hills.las"}, {}, context);
+  const auto highest = spillway::dem_band_of("p95");
+  const spillway::DemOptions figures{.products = {spillway::DemProduct::kCount, highest->product},
+                                     .resolution = 5,
+                                     .percentiles = {highest->percentile}};
+  const auto of_points = spillway::create_dem(folder / "figures.tif", figures, context);
+  spillway::triangulate(*all, *of_points, {}, context);
+  expect(of_points->report().bands.back() == spillway::name_of(*highest), "bands have names");
+  expect(of_points->report().points_in_pixels > 0, "points are in pixels");
+
   const auto again = spillway::open_mesh(folder / "hills.spm", {}, context);
   const auto lines = spillway::create_contours(folder / "lines.gpkg", {.interval = 5}, context);
   spillway::convert(*again, *lines, context);

@@ -31,6 +31,12 @@ class Dem(InFolder):
             "--resolution 3 --product hillshade --type byte": {
                 "resolution": 3, "product": "hillshade", "type": "byte",
             },
+            "--resolution 3 --product max,p50,count,p99.5": {
+                "resolution": 3, "product": ["max", "p50", "count", "p99.5"],
+            },
+            "--resolution 1 --product mean,height --fill-voids --max-edge 9": {
+                "resolution": 1, "product": ["mean", "height"], "fill_voids": True, "max_edge": 9,
+            },
             f"--resolution 5 --bounds {box}": {"resolution": 5, "bounds": corners},
             f"--resolution 5 --clip-bounds {box}": {"resolution": 5, "clip_bounds": corners},
             "--resolution 3 --cog --max-edge 20": {"resolution": 3, "cog": True, "max_edge": 20},
@@ -93,6 +99,20 @@ class Dem(InFolder):
         self.assertIsNone(raster.crs)
         self.assert_nothing_is_left("hills.las")
 
+    def test_products_of_points_are_those_of_numpy(self):
+        places = np.random.default_rng(3).uniform(0, 20, (3000, 3))
+        points = np.concatenate([places, places[:1000] + [0, 0, 5]])  # some above others
+        products = ["min", "max", "mean", "stddev", "p25", "count"]
+        raster = spillway.dem(points, resolution=4, product=products, bounds=(0, 0, 20, 20))
+        self.assertEqual(raster.report.bands, products)
+        self.assertEqual(raster.report.points_in_pixels, 4000)
+        self.assertEqual(raster.report.pixels_with_points, 25)
+        for row, column in np.ndindex(5, 5):
+            inside = (points[:, 0] // 4 == column) & ((20 - points[:, 1]) // 4 == row)
+            z = points[inside, 2]
+            expected = [z.min(), z.max(), z.mean(), z.std(), np.percentile(z, 25), z.size]
+            np.testing.assert_allclose(raster.values[:, row, column], expected, rtol=1e-6)
+
     def test_pixels_without_data_are_not_a_number(self):
         points = np.array([[0, 0, 1], [10, 0, 1], [0, 10, 1.0]])
         raster = spillway.dem(points, resolution=1)
@@ -110,6 +130,8 @@ class Dem(InFolder):
             ("z_factor has no effect", {"resolution": 1, "z_factor": 3}),
             ("gradient has no effect", {"resolution": 1, "gradient": "horn"}),
             ("compute_edges has no effect", {"resolution": 1, "compute_edges": True}),
+            ("fill_voids has no effect", {"resolution": 1, "product": "count", "fill_voids": True}),
+            ("heights has no effect", {"resolution": 1, "product": "max", "heights": "mean"}),
             ("max_edge has no effect", {"resolution": 1, "product": "density", "max_edge": 3}),
             (
                 "force_size has no effect with bounds",

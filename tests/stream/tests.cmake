@@ -3,7 +3,7 @@ spillway_test(stream_unit_test unit
           stream/output/sequencer_test.cpp stream/plan/memory_plan_test.cpp
           stream/sinks/band_store_test.cpp stream/sinks/contour_shape_test.cpp stream/sinks/contour_shares_test.cpp
           stream/sinks/contour_test.cpp
-          stream/sinks/line_joiner_test.cpp stream/sinks/raster_store_test.cpp
+          stream/sinks/line_joiner_test.cpp stream/sinks/pixel_points_test.cpp stream/sinks/raster_store_test.cpp
           stream/sinks/tetrahedron_writers_test.cpp
           stream/points/equal_points_test.cpp stream/tiles/storage/cell_sketch_test.cpp stream/points/point_buffer_test.cpp stream/points/point_sample_test.cpp
           stream/points/point_span_test.cpp stream/tiles/storage/segment_reader_test.cpp
@@ -52,6 +52,7 @@ spillway_test(point_input_test unit
 
 spillway_test(dem_test property
   SOURCES stream/sinks/dem_test.cpp stream/sinks/dem_neighbours_test.cpp stream/sinks/dem_oracle_test.cpp
+          stream/sinks/dem_points_test.cpp
           stream/sinks/dem_sheets_test.cpp
   LIBS spillway_stream_ranks
   TIMEOUT 300)

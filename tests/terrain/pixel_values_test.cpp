@@ -151,18 +151,5 @@ TEST(GridChoice, MorePixelsThanGdalCountsAreRefused) {
   EXPECT_THROW((void)choose_grid({.resolution = 1e-9}, {{0, 0}, {100, 1}}), InvalidArgument);
 }
 
-TEST(GridChoice, PixelsHoldTheirWesternAndNorthernEdgesAndTheLastOneBoth) {
-  const PixelGrid grid{10, 20, 2, 3, 4};
-  EXPECT_EQ(column_of(grid, 10), 0U);
-  EXPECT_EQ(column_of(grid, 12), 1U);
-  EXPECT_EQ(column_of(grid, 16), 2U);
-  EXPECT_EQ(column_of(grid, 16.01), std::nullopt);
-  EXPECT_EQ(column_of(grid, 9.99), std::nullopt);
-  EXPECT_EQ(row_of(grid, 20), 0U);
-  EXPECT_EQ(row_of(grid, 18), 1U);
-  EXPECT_EQ(row_of(grid, 12), 3U);
-  EXPECT_EQ(row_of(grid, 11.9), std::nullopt);
-}
-
 }  // namespace
 }  // namespace spillway::test

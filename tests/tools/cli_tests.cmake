@@ -64,7 +64,7 @@ if(SPILLWAY_GDAL)
   spillway_command_test(cli_dem_tests cli
     tools/commands/cli_batch_buffer_test.cpp
     tools/commands/cli_dem_test.cpp tools/commands/cli_dem_survey_test.cpp
-    tools/commands/cli_dem_gdaldem_test.cpp
+    tools/commands/cli_dem_gdaldem_test.cpp tools/commands/cli_dem_points_test.cpp
     tools/commands/cli_dem_tiles_test.cpp
     tools/commands/cli_dem_units_test.cpp
     tools/commands/cli_layers_test.cpp)

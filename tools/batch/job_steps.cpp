@@ -14,6 +14,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "formats/vectors/vector_formats.h"
 #include "tools/options/input_options.h"
+#include "tools/options/triangulation_options.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::command {
@@ -53,9 +54,10 @@ OutputKind kind_by_name(const Job& job, const std::string& name) {
     return {"triangulate", {}};
   }
   const std::string first = name.substr(0, dot);
-  const std::vector<std::string>& products = dem_product_names();
   const bool is_subcommand = std::ranges::find(kSubcommands, first) != kSubcommands.end();
-  if (!is_subcommand && std::ranges::find(products, first) == products.end()) {
+  if (!is_subcommand && !dem_band_of(first)) {
+    std::vector<std::string> products = dem_product_names();
+    products.back() = "p95";  // for all percentiles
     throw UsageError(
         fmt::format("{}: no output can be made as \"{}\"; before the dot stands one "
                     "of {}, {}",
@@ -104,28 +106,40 @@ std::string products_of(const OutputKind& kind, const Job& job) {
 }
 
 /// Options of a raster that only such products use.
-constexpr std::array<std::pair<std::string_view, bool DemProductTraits::*>, 5> kTraitOfOption = {
+constexpr std::array<std::pair<std::string_view, bool DemProductTraits::*>, 6> kTraitOfOption = {
     {{"azimuth", &DemProductTraits::by_azimuth},
      {"altitude", &DemProductTraits::by_altitude},
      {"z-factor", &DemProductTraits::by_ground},
      {"gradient", &DemProductTraits::by_gradient},
-     {"compute-edges", &DemProductTraits::of_neighbours}}};
+     {"compute-edges", &DemProductTraits::of_neighbours},
+     {"fill-voids", &DemProductTraits::fills_voids}}};
 
 /// Of products with commas between them; unknown ones are left to the subcommand.
 std::vector<DemProductTraits> traits_of_list(const std::string& products) {
-  const std::vector<std::string>& names = dem_product_names();
   std::vector<DemProductTraits> traits;
   std::istringstream words(products);
   for (std::string name; std::getline(words, name, ',');) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end()) continue;
-    traits.push_back(traits_of(static_cast<DemProduct>(found - names.begin())));
+    if (const auto band = dem_band_of(name)) traits.push_back(traits_of(band->product));
   }
   return traits;
 }
 
+/// Whether it is of no use where nothing is triangulated.
+bool is_of_triangles(const std::string& name) {
+  return name == "max-edge" ||
+         (name != "no-trust-headers" && std::ranges::find(kTriangulationOptionNames, "--" + name) !=
+                                            kTriangulationOptionNames.end());
+}
+
 bool has_any(const std::vector<DemProductTraits>& traits, bool DemProductTraits::*trait) {
   return std::ranges::any_of(traits, trait);
+}
+
+/// Whether an output is made of points, for which no mesh will do.
+bool needs_points(const Job& job, const std::string& name) {
+  const OutputKind kind = kind_by_name(job, name);
+  return kind.subcommand == "dem" &&
+         has_any(traits_of_list(products_of(kind, job)), &DemProductTraits::of_points);
 }
 
 bool has_value(const Job& job, const std::string& option, const std::string& value) {
@@ -173,9 +187,13 @@ std::vector<JobStep> JobPlanner::plan(const Job& job) const {
     if (std::find(kinds.begin(), kind, *kind) == kind) continue;
     throw UsageError(fmt::format("{}: the output {} appears twice", job.name, *kind));
   }
-  if (kinds.size() == 1) {
-    steps.push_back(step(job, kinds.front(), job.inputs, true));
-  } else {
+  const auto of_mesh = std::ranges::stable_partition(
+      kinds, [&](const std::string& kind) { return needs_points(job, kind); });
+  std::vector<std::string> of_points(kinds.begin(), of_mesh.begin());
+  kinds.erase(kinds.begin(), of_mesh.begin());
+  if (kinds.size() == 1) of_points.push_back(std::exchange(kinds, {}).front());
+  for (const std::string& kind : of_points) steps.push_back(step(job, kind, job.inputs, true));
+  if (!kinds.empty()) {
     const auto stream = std::find(kinds.begin(), kinds.end(), stream_kind());
     JobStep first = step(job, stream_kind(), job.inputs, true);
     if (stream != kinds.end()) {
@@ -261,6 +279,9 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
     if (name == "type") return all_shades;
     if (name == "nodata" && all_shades && has_value(job, "type", "byte")) return false;
     if (name == "force-crs" && job.options.contains("like")) return true;
+    const bool needs_triangles = traits.empty() || job.options.contains("fill-voids") ||
+                                 !std::ranges::all_of(traits, &DemProductTraits::of_points);
+    if (!needs_triangles && is_of_triangles(name)) return false;
     if (products == "density" && (name == "max-edge" || name == "heights")) return false;
   }
   if (makes_raster(job) && (name == "bounds" || name == "resolution")) return subcommand == "dem";

@@ -30,8 +30,8 @@ class JobPlanner {
   /// `scratch`.
   JobPlanner(const CommandLine& root, std::string folder, std::string scratch);
 
-  /// The steps of a job, in order: a single output is made of the points at once, several are made
-  /// of one triangulation. Throws UsageError that names the job for a kind of output or an option
+  /// The steps of a job, in order: rasters of points are made of the points, and so is a single
+  /// output besides; several are made of one triangulation. Throws UsageError that names the job for a kind of output or an option
   /// that there is not.
   [[nodiscard]] std::vector<JobStep> plan(const Job& job) const;
 

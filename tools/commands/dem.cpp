@@ -28,21 +28,20 @@ constexpr const char* kExamples =
     "  spillway dem survey.laz -o dem.tif --resolution 0.5\n"
     "  spillway dem 'tiles/*.laz' -o dtm.tif --resolution 0.5 --keep-class 2 --align --cog\n"
     "  spillway dem survey.las -o relief.tif --resolution 1 --product height,slope,hillshade\n"
+    "  spillway dem survey.las -o points.tif --resolution 1 --product max,mean,p95,count\n"
     "  spillway dem survey.las -o canopy.tif --resolution 1 --product chm --ground-class 2\n"
     "  spillway dem after.las -o after.tif --like before.tif\n"
     "  spillway dem 'tiles/*.laz' -o 'dtm_{x}_{y}.tif' --resolution 0.5 --tiles 1000\n"
     "  spillway triangulate survey.las -o - | spillway dem - -o dem.tif --resolution 1\n"
     "The DEM is interpolated linearly within the triangles; docs/dem.md tells more.";
 
-bool needs_neighbours(const std::string& product) {
-  const std::vector<std::string>& names = dem_product_names();
-  const auto number = std::ranges::find(names, product) - names.begin();
-  return traits_of(static_cast<DemProduct>(number)).of_neighbours;
+DemProductTraits traits_of_band(const std::string& name) {
+  return traits_of(dem_band_of(name)->product);
 }
 
 /// Why no pixel has a value, and what helps.
 std::string why_empty(const DemCommandOptions& options, const DemReport& raster) {
-  if (!options.compute_edges && needs_neighbours(raster.bands.front()) &&
+  if (!options.compute_edges && traits_of_band(raster.bands.front()).of_neighbours &&
       (raster.columns < 3 || raster.rows < 3)) {
     return fmt::format(
         "none of the {} x {} has the eight neighbours that {} needs; give a smaller --resolution, "
@@ -85,10 +84,27 @@ void say(const DemCommandOptions& options, const Report& report, const DemReport
     progress.insist("warning: no pixel has a value: " + why_empty(options, raster));
   }
   if (!options.tiles.empty()) say_tiles(options, raster, progress);
-  progress.say(
-      fmt::format("{} vertices, {} triangles; {} x {} pixels of {}, {} with data, {:.2f} s",
-                  report.mesh.vertices, report.mesh.simplices, raster.columns, raster.rows,
-                  raster.resolution, raster.pixels_with_data, facts.seconds));
+  const bool of_points = std::ranges::any_of(
+      raster.bands, [](const std::string& name) { return traits_of_band(name).of_points; });
+  if (of_points) {
+    // Tiles may overlap.
+    const std::uint64_t beside =
+        report.mesh.points - std::min(report.mesh.points, raster.points_in_pixels);
+    progress.say(fmt::format("{} points in {} pixels{}", raster.points_in_pixels,
+                             raster.pixels_with_points,
+                             beside > 0 ? fmt::format(", {} beside the raster", beside) : ""));
+  }
+  if (options.fill_voids) {
+    progress.say(fmt::format("{} pixels without points have the height of a triangle",
+                             raster.filled_pixels));
+  }
+  const std::string of_mesh =
+      report.mesh.simplices > 0
+          ? fmt::format("{} vertices, {} triangles; ", report.mesh.vertices, report.mesh.simplices)
+          : "";
+  progress.say(fmt::format("{}{} x {} pixels of {}, {} with data, {:.2f} s", of_mesh,
+                           raster.columns, raster.rows, raster.resolution, raster.pixels_with_data,
+                           facts.seconds));
 }
 
 Json raster_json(const DemReport& raster) {
@@ -104,7 +120,10 @@ Json raster_json(const DemReport& raster) {
           {"empty_tiles", raster.empty_tiles},
           {"vrt", raster.vrt},
           {"closed_tiles", raster.closed_tiles},
-          {"spilled_bytes", raster.spilled_bytes}};
+          {"spilled_bytes", raster.spilled_bytes},
+          {"points_in_pixels", raster.points_in_pixels},
+          {"pixels_with_points", raster.pixels_with_points},
+          {"filled_pixels", raster.filled_pixels}};
 }
 
 /// Sends the triangles of points whose z is their height above the ground. Those below it, or

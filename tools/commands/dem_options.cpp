@@ -42,26 +42,46 @@ float parse_nodata(const std::string& text) {
   return static_cast<float>(*value) + 0.0F;  // -0 becomes 0
 }
 
-std::vector<DemProduct> parse_products(const std::string& text) {
-  if (text == kCanopy) return {DemProduct::kHeight};  // of heights above the ground
-  const std::vector<std::string>& names = dem_product_names();
-  std::vector<DemProduct> products;
+/// Those that --product has by name; percentiles have their number there.
+std::vector<std::string> plain_product_names() {
+  std::vector<std::string> names = dem_product_names();
+  names.pop_back();
+  return names;
+}
+
+/// Sets products and percentiles.
+void parse_products(const std::string& text, DemOptions& dem) {
+  if (text == kCanopy) {
+    dem.products = {DemProduct::kHeight};  // of heights above the ground
+    return;
+  }
+  std::vector<std::string> seen;
+  dem.products.clear();
   std::istringstream words(text);
   for (std::string name; std::getline(words, name, ',');) {
     if (name == kCanopy) throw UsageError("chm is a raster of its own: ask for it alone");
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
+    const std::optional<DemBand> band = dem_band_of(name);
+    if (!band) {
       throw UsageError(fmt::format(
-          "\"{}\" is not a product{}; give height, slope, hillshade or another one, several "
-          "separated by commas",
-          name, suggestion(name, names)));
+          "\"{}\" is not a product{}; give height, slope, hillshade, max, p95 (a percentile) or "
+          "another one, several separated by commas",
+          name, suggestion(name, plain_product_names())));
     }
-    products.push_back(static_cast<DemProduct>(found - names.begin()));
-    if (std::count(products.begin(), products.end(), products.back()) > 1) {
+    dem.products.push_back(band->product);
+    if (band->product == DemProduct::kPercentile) dem.percentiles.push_back(band->percentile);
+    if (std::ranges::count(seen, seen.emplace_back(name_of(*band))) > 1) {
       throw UsageError(fmt::format("{} appears twice", name));
     }
   }
-  return products;
+}
+
+/// Refuses options of triangles where none are needed.
+void refuse_options_of_triangles(const CommandLine& app) {
+  std::vector<std::string_view> names(kTriangulationOptionNames.begin(),
+                                      kTriangulationOptionNames.end());
+  names.emplace_back("--max-edge");
+  std::erase(names, "--no-trust-headers");
+  refuse_given(app, names, "on products of points alone, for which nothing is triangulated");
 }
 
 /// Refuses options that make no difference to the products.
@@ -85,6 +105,13 @@ void check_products(const DemCommandOptions& options, const std::vector<DemProdu
   }
   if (!any(&DemProductTraits::of_neighbours)) {
     refuse_given(app, {"--compute-edges"}, "without a product of a pixel's neighbours, like slope");
+  }
+  if (!any(&DemProductTraits::fills_voids)) {
+    refuse_given(app, {"--fill-voids"}, "without min, max, mean or a percentile");
+  }
+  if (std::ranges::all_of(products, [](DemProduct one) { return traits_of(one).of_points; }) &&
+      !options.fill_voids) {
+    refuse_options_of_triangles(app);
   }
   if (products == std::vector{DemProduct::kDensity}) {
     refuse_given(app, {"--heights", "--max-edge"}, "on density, which counts vertices");
@@ -168,10 +195,13 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .value_name("FILE")
       .group(group);
   take_parsed(app.add_option("--product", options.products,
-                             fmt::format("{}; several, with commas, become bands; or {}, heights "
-                                         "above the ground",
-                                         fmt::join(dem_product_names(), ", "), kCanopy)),
-              parse_products)
+                             fmt::format("{}, p0 to p100 (percentiles); several, with commas, "
+                                         "become bands; or {}, heights above the ground",
+                                         fmt::join(plain_product_names(), ", "), kCanopy)),
+              [](const std::string& text) {
+                DemOptions checked;
+                parse_products(text, checked);
+              })
       .value_name("LIST")
       .show_default()
       .group(group);
@@ -200,6 +230,9 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .group(group);
   app.add_flag("--compute-edges", options.compute_edges,
                "Make slopes and the like also where neighbours have no data")
+      .group(group);
+  app.add_flag("--fill-voids", options.fill_voids,
+               "Give min, max, mean and percentiles of pixels without points the triangle's height")
       .group(group);
   take_parsed(app.add_option("--nodata", options.nodata, "Value of pixels without data"),
               parse_nodata)
@@ -236,7 +269,7 @@ DemOptions dem_options(const DemCommandOptions& options) {
     dem.like = options.like;
     dem.foreign_crs = options.input.force_crs;
   }
-  dem.products = parse_products(options.products);
+  parse_products(options.products, dem);
   if (options.products == kCanopy) {
     refuse_given(*options.app, {"--tasks", "--resume", "--checkpoint-every"},
                  "with --product chm, which takes two runs");
@@ -248,6 +281,7 @@ DemOptions dem_options(const DemCommandOptions& options) {
   dem.gradient =
       options.gradient == "horn" ? GradientMethod::kHorn : GradientMethod::kZevenbergenThorne;
   dem.compute_edges = options.compute_edges;
+  dem.fill_voids = options.fill_voids;
   dem.type = options.type == "byte" ? PixelType::kByte : PixelType::kFloat32;
   dem.azimuth = options.azimuth;
   dem.altitude = options.altitude;

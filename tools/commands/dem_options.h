@@ -25,6 +25,7 @@ struct DemCommandOptions : TerrainOptions {
   std::string ground_class;
   std::string gradient = "horn";
   bool compute_edges = false;
+  bool fill_voids = false;
   std::string nodata = "-9999";
   std::string type = "float32";
   std::string compression = "deflate";

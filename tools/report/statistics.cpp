@@ -22,7 +22,7 @@ Json phases(const RunStatistics& statistics) {
 }
 
 Json stages(const RunStatistics& statistics) {
-  Json json;
+  Json json = Json::object();
   for (const StageSeconds& stage : statistics.stages)
     json[std::string(stage.stage)] = stage.seconds;
   return json;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -60,11 +61,46 @@ void check_path(const std::string& path) {
 void check_products(const std::vector<DemProduct>& products) {
   if (products.empty()) throw InvalidArgument("a DEM has a product at least: none is given");
   for (const DemProduct product : products) {
-    check_choice(product, DemProduct::kDensity, "product");
+    check_choice(product, DemProduct::kPercentile, "product");
   }
-  if (std::set<DemProduct>(products.begin(), products.end()).size() < products.size()) {
-    throw InvalidArgument("a product is there twice");
+  std::set<DemProduct> seen;
+  for (const DemProduct product : products) {
+    if (product != DemProduct::kPercentile && !seen.insert(product).second) {
+      throw InvalidArgument("a product is there twice");
+    }
   }
+}
+
+/// Percentiles, and what is filled.
+void check_products_of_points(const DemOptions& options) {
+  const std::vector<double>& percentiles = options.percentiles;
+  const auto wanted = std::ranges::count(options.products, DemProduct::kPercentile);
+  if (std::ssize(percentiles) != wanted) {
+    throw InvalidArgument(
+        fmt::format("{} percentiles are among the products, and {} numbers say "
+                    "which: there must be one for each",
+                    wanted, percentiles.size()));
+  }
+  for (const double percent : percentiles) {
+    if (!(percent >= 0 && percent <= 100)) {
+      throw InvalidArgument(fmt::format("percentiles are of 0 to 100, not {}", percent));
+    }
+  }
+  if (std::set<double>(percentiles.begin(), percentiles.end()).size() < percentiles.size()) {
+    throw InvalidArgument("a percentile is there twice");
+  }
+  if (options.fill_voids && std::ranges::none_of(options.products, [](DemProduct product) {
+        return traits_of(product).fills_voids;
+      })) {
+    throw InvalidArgument(
+        "voids are filled of lowest, highest and mean heights of points, and of "
+        "percentiles, none of which is among the products");
+  }
+}
+
+/// Whether it depends on z.
+bool is_of_heights(DemProduct product) {
+  return product != DemProduct::kDensity && product != DemProduct::kCount;
 }
 
 /// Whether a product compares heights with distances.
@@ -127,6 +163,7 @@ RasterOptions file_options(const std::string& path, const DemOptions& options,
 DemFile::DemFile(const DemOptions& options, const Context& context)
     : OwnSink(context), options_(options), scratch_(context.state().scratch(context)) {
   check_products(options_.products);
+  check_products_of_points(options_);
   check_choice(options_.gradient, GradientMethod::kZevenbergenThorne, "gradient method");
   check_light_and_file(options_);
   check_z_factor(options_.z_factor);
@@ -140,6 +177,8 @@ DemFile::DemFile(const DemOptions& options, const Context& context)
   dem_options_.light = {options_.azimuth, options_.altitude};
   dem_options_.gradient = options_.gradient;
   dem_options_.compute_edges = options_.compute_edges;
+  dem_options_.percentiles = options_.percentiles;
+  dem_options_.fill_voids = options_.fill_voids;
   dem_options_.nodata = options_.nodata;
   dem_options_.memory = own_memory(context.memory());
   dem_options_.threads = feeding_threads(context.threads());
@@ -179,6 +218,12 @@ unsigned DemFile::feeding_threads(unsigned threads) const {
   return plan_memory(limit - own_memory(limit), 2, threads).threads;
 }
 
+bool DemFile::wants_simplices() const {
+  return options_.fill_voids || std::ranges::any_of(options_.products, [](DemProduct product) {
+           return !traits_of(product).of_points;
+         });
+}
+
 bool DemFile::wants_extent() const { return !dem_options_.grid.bounds && options_.like.empty(); }
 
 void DemFile::ask_gdal() {
@@ -193,9 +238,8 @@ void DemFile::ask_gdal() {
 
 BlockSink& DemFile::open(const MeshStart& start) {
   refuse_tetrahedra(start);
-  const bool needs_heights = std::ranges::any_of(
-      options_.products, [](DemProduct product) { return product != DemProduct::kDensity; });
-  if (needs_heights) refuse_without_heights(start);
+  if (std::ranges::any_of(options_.products, is_of_heights)) refuse_without_heights(start);
+  refuse_without_points(start);
   ask_gdal();
   check_crs(start);
   crs_ = start.header.crs.empty() ? like_.crs : start.header.crs;
@@ -212,6 +256,16 @@ BlockSink& DemFile::open(const MeshStart& start) {
     tell_of_degrees();
   }
   return writer_.emplace(*dem_);
+}
+
+/// Of a mesh only the vertices are left of the points.
+void DemFile::refuse_without_points(const MeshStart& start) const {
+  if (start.is_triangulated || !wants_points()) return;
+  const auto found = std::ranges::find_if(
+      options_.products, [](DemProduct product) { return traits_of(product).of_points; });
+  throw InvalidArgument(
+      fmt::format("{} is a mesh, which has only vertices, and {} is of all points: give the points",
+                  start.name, dem_product_names()[static_cast<std::size_t>(*found)]));
 }
 
 /// What pixels are; how the file keeps them may be another choice.
@@ -239,6 +293,8 @@ void DemFile::identify(RunIdentity& identity) const {
   add("altitude", options_.altitude);
   add("gradient", options_.gradient == GradientMethod::kHorn ? "Horn" : "Zevenbergen-Thorne");
   add("values at edges", options_.compute_edges);
+  add("percentiles", fmt::format("{}", fmt::join(options_.percentiles, " ")));
+  add("filled voids", options_.fill_voids);
   add("side of tiles", options_.tile_side);
   if (!options_.tile_polygons.empty()) identity.add_file("polygons", options_.tile_polygons);
   add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
@@ -377,7 +433,7 @@ void DemFile::check_size(const Box<2>& extent, std::uint64_t vertices) const {
 void DemFile::take_merged(const MergedBlock& block) { writer_->take_merged(block); }
 
 void DemFile::give_share(ShareSender& sender) {
-  with_threads(dem_options_.threads, [&] { give_tiles(*dem_, sender); });
+  with_threads(dem_options_.threads, [&] { stream::give_share(*dem_, sender); });
 }
 
 std::vector<SheetPlace> DemFile::lay_tiles(const PixelGrid& raster) {
@@ -423,7 +479,7 @@ void DemFile::write_vrt(const std::vector<std::string>& files) {
 void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
   Dem& dem = *dem_;
   const PixelGrid& grid = dem.grid();
-  const OtherTiles of_others = tiles_of_others(others);
+  const OtherTiles of_others = take_shares(others, dem);
   watch.begin("write", "pixels");
   const std::uint64_t pixels = std::uint64_t{grid.columns} * grid.rows;
   const std::uint64_t early = written_files().size();
@@ -453,7 +509,10 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
              .bands = dem.raster_options().bands,
              .pixels_with_data = dem.pixels_with_data(),
              .closed_tiles = dem.closed_tiles(),
-             .spilled_bytes = dem.spilled_bytes()};
+             .spilled_bytes = dem.spilled_bytes(),
+             .points_in_pixels = dem.points_in_pixels(),
+             .pixels_with_points = dem.pixels_with_points(),
+             .filled_pixels = dem.filled_pixels()};
   if (tiling_) {
     files = written_files();
     report_.files = files.size();
@@ -476,11 +535,48 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
 namespace spillway {
 
 const std::vector<std::string>& dem_product_names() {
-  static const std::vector<std::string> names = {
-      "height",         "slope",       "aspect",       "hillshade",       "multi-hillshade",
-      "roughness",      "tri",         "tpi",          "curvature",       "profile-curvature",
-      "plan-curvature", "facet-slope", "facet-aspect", "facet-hillshade", "density"};
+  static const std::vector<std::string> names = {"height",
+                                                 "slope",
+                                                 "aspect",
+                                                 "hillshade",
+                                                 "multi-hillshade",
+                                                 "roughness",
+                                                 "tri",
+                                                 "tpi",
+                                                 "curvature",
+                                                 "profile-curvature",
+                                                 "plan-curvature",
+                                                 "facet-slope",
+                                                 "facet-aspect",
+                                                 "facet-hillshade",
+                                                 "density",
+                                                 "min",
+                                                 "max",
+                                                 "mean",
+                                                 "count",
+                                                 "stddev",
+                                                 "percentile"};
   return names;
+}
+
+std::optional<DemBand> dem_band_of(const std::string& name) {
+  const std::vector<std::string>& names = dem_product_names();
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end() && *found != names.back()) {
+    return DemBand{static_cast<DemProduct>(found - names.begin())};
+  }
+  if (name.size() < 2 || name.front() != 'p') return std::nullopt;
+  double percent = 0;
+  const char* const end = name.data() + name.size();
+  const auto [read, error] = std::from_chars(name.data() + 1, end, percent);
+  const bool is_one = error == std::errc() && read == end && percent >= 0 && percent <= 100;
+  if (!is_one) return std::nullopt;
+  return DemBand{DemProduct::kPercentile, percent + 0.0};
+}
+
+std::string name_of(const DemBand& band) {
+  if (band.product == DemProduct::kPercentile) return fmt::format("p{}", band.percentile);
+  return dem_product_names()[static_cast<std::size_t>(band.product)];
 }
 
 DemProductTraits traits_of(DemProduct product) {
@@ -509,6 +605,14 @@ DemProductTraits traits_of(DemProduct product) {
       return {.by_ground = true};
     case DemProduct::kFacetHillshade:
       return {.by_ground = true, .by_azimuth = true, .by_altitude = true};
+    case DemProduct::kMin:
+    case DemProduct::kMax:
+    case DemProduct::kMean:
+    case DemProduct::kPercentile:
+      return {.of_points = true, .fills_voids = true};
+    case DemProduct::kCount:
+    case DemProduct::kStddev:
+      return {.of_points = true};
     case DemProduct::kHeight:
     case DemProduct::kDensity:
       break;

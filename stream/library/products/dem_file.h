@@ -38,6 +38,9 @@ class DemFile final : public OwnSink<DemSink> {
   [[nodiscard]] bool extent_told(const Box<2>& extent, std::uint64_t vertices) override;
   [[nodiscard]] bool extent_holds(const Box<2>& extent) override;
   BlockSink* begin_again() override;
+  [[nodiscard]] bool wants_simplices() const override;
+  [[nodiscard]] bool wants_points() const override { return are_of_points(options_.products); }
+  void take_points(std::span<const LatticePoint> points) override { dem_->take_points(points); }
   [[nodiscard]] bool has_shares() const override { return true; }
   void take_merged(const MergedBlock& block) override;
   void give_share(ShareSender& sender) override;
@@ -52,6 +55,7 @@ class DemFile final : public OwnSink<DemSink> {
   /// Once all is found that is wrong without it: the driver there is, and the raster to be like.
   void ask_gdal();
   void check_crs(const MeshStart& start) const;
+  void refuse_without_points(const MeshStart& start) const;
   [[nodiscard]] GroundScale ground() const;
   void check_latitudes(const Box<2>& extent) const;
   [[nodiscard]] PixelGrid grid_of(const Box<2>& extent) const;

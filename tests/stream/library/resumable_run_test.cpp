@@ -130,6 +130,31 @@ TEST_F(ResumableRun, GoesOnWithARasterOfTheSamePixelsAlone) {
   EXPECT_FALSE(fs::exists(path("run")));
 }
 
+/// Points that were told of before the checkpoint do not come again, and all others do.
+TEST_F(ResumableRun, GoesOnWithThePointsThatAreInPixels) {
+  const DemOptions raster{.products = {DemProduct::kCount, DemProduct::kMean, DemProduct::kHeight,
+                                       DemProduct::kPercentile},
+                          .resolution = 7,
+                          .percentiles = {50}};
+  const auto run = [&](const std::string& name, const TriangulateOptions& how,
+                       const Context& context) {
+    const auto source = open_points({path("points.txt")}, {}, context);
+    triangulate(*source, *create_dem(path(name), raster, context), how, context);
+  };
+  run("usual.tif", {.tile_points = 100}, context_);
+  for (const std::uint64_t last : {300U, 900U, 1500U}) {
+    const Context ended({.memory = "64M", .threads = 2, .progress = [=](const Progress& progress) {
+                           if (progress.phase == "triangulate" && progress.done >= last) {
+                             throw std::runtime_error("the end");
+                           }
+                         }});
+    EXPECT_THROW(run("dem.tif", options(), ended), std::runtime_error);
+    EXPECT_TRUE(fs::exists(path("run/state")));
+  }
+  run("dem.tif", options(), context_);
+  EXPECT_EQ(bytes_of("dem.tif"), bytes_of("usual.tif"));
+}
+
 TEST_F(ResumableRun, LeavesTheMeshForWhatFailsButNotForWantOfMemory) {
   const auto folder_after = [&](ErrorCode code, Remedy remedy) {
     const auto sink =

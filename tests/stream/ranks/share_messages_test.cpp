@@ -32,13 +32,13 @@ void paint(Dem& dem, const Triangle& triangle) {
 
 void give(Dem& dem) {
   ShareToFirstRank sender(world());
-  give_tiles(dem, sender);
+  give_share(dem, sender);
   sender.end();
 }
 
 void write(Dem& dem, Raster& raster, const std::function<void(std::uint64_t)>& progress) {
   SharesOfOtherRanks others(world());
-  dem.write(raster, progress, tiles_of_others(others));
+  dem.write(raster, progress, take_shares(others, dem));
   others.end();
 }
 

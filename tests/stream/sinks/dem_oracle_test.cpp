@@ -228,9 +228,10 @@ TEST(DemOracle, EveryPixelIsThatOfTheTriangleThatOwnsItsCentre) {
     for (const DemSinkOptions& options : rasters()) {
       const Rastered dem = raster_of(cloud, options);
       std::vector<float> density(dem.bands[4].size());
+      const PixelCells cells(dem.grid, std::nullopt);
       for (const Point<3>& p : cloud) {
-        const auto column = column_of(dem.grid, p[0]);
-        const auto row = row_of(dem.grid, p[1]);
+        const auto column = cells.column(p[0]);
+        const auto row = cells.row(p[1]);
         if (column && row) ++density[*row * dem.grid.columns + *column];
       }
       for (std::size_t i = 0; i < density.size(); ++i) {

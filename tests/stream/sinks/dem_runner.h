@@ -50,13 +50,17 @@ struct Rastered {
   std::uint64_t with_data = 0;
   std::uint64_t spilled = 0;
   std::uint64_t closed = 0;
+  std::uint64_t points = 0;
+  std::uint64_t filled = 0;
 };
 
 inline Rastered finished(Dem& dem, const DemSinkOptions& options) {
   KeepingRaster raster(dem.grid(), options.products.size());
   dem.write(raster, [](std::uint64_t) {});
   return {dem.grid(), std::move(raster.bands), dem.pixels_with_data(), dem.spilled_bytes(),
-          dem.closed_tiles()};
+          dem.closed_tiles(),
+          dem.points_in_pixels(),
+          dem.filled_pixels()};
 }
 
 /// Points through the whole pipeline.
@@ -70,14 +74,17 @@ inline Rastered raster_of(const std::vector<Point<3>>& points, DemSinkOptions op
   Dem dem(options, source.lattice(), *setup.scratch);
   class Extents final : public RunSink {
    public:
-    explicit Extents(Dem& dem) : dem_(dem) {}
+    Extents(Dem& dem, bool wants_points) : dem_(dem), wants_points_(wants_points) {}
     void extent_known(const Box<2>& extent, std::uint64_t /*points*/) override {
       dem_.begin(extent);
     }
+    [[nodiscard]] bool wants_points() const override { return wants_points_; }
+    void take_points(std::span<const LatticePoint> points) override { dem_.take_points(points); }
 
    private:
     Dem& dem_;
-  } extents(dem);
+    const bool wants_points_;
+  } extents(dem, are_of_points(options.products));
   DemWriter writer(dem);
   (void)triangulate_stream<2>(
       source, writer, {setup.options, *setup.scratch, setup.budget, extents, setup.progress});

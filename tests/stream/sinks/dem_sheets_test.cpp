@@ -136,11 +136,10 @@ TEST(DemSheets, EqualTheWholeRasterInEveryPixel) {
         for (const unsigned threads : {1U, 2U, 4U}) {
           EngineOptions stream{.asked = {.tile_points = 1000}};
           stream.threads = threads;
-          options.memory =
-              threads == 2
-                  ? kMemory
-                  : 2 * RasterStore::least_memory(3, threads) +
-                        2 * DemOutput::slot_bytes(options.products, layers_of(options.products));
+          options.memory = threads == 2 ? kMemory
+                                        : 2 * RasterStore::least_memory(3, threads) +
+                                              2 * DemOutput::slot_bytes(
+                                                      options, layers_of(options.products, false));
           const Sheets sheets = sheets_of(points, options, stream);
           ASSERT_EQ(sheets.grid, one.grid);
           EXPECT_EQ(sheets.with_data, one.with_data);

@@ -56,7 +56,8 @@ constexpr std::size_t kLeastY = 203;
 TEST_F(DemOfASurvey, IsPaintedEarlyAndEqualsThatOfOneFile) {
   for (const std::string options :
        {"--cog", "--product slope,facet-aspect,height,hillshade", "--product height,density",
-        "--align", "--max-edge 5", "--bounds 500000,4100000,500250,4100300"}) {
+        "--product height,count,max,p90", "--align", "--max-edge 5",
+        "--bounds 500000,4100000,500250,4100300"}) {
     // Which of several points with equal x and y comes first is up to the files.
     const std::string all = " --heights lowest " + options;
     EXPECT_FALSE(is_early(make("one.tif", "all.las" + all)));
@@ -109,8 +110,8 @@ TEST_F(DemOfASurvey, BoxesThatAreTooSmallAreFoundOut) {
   const nlohmann::json extent = work_.info("t_04_04.las")["extent"];
   const double least = extent["min"][0];
   const double most = extent["max"][0];
-  for (const std::string options :
-       {"", " --align", " --bounds 500000,4100000,500250,4100300", " --product height,density"}) {
+  for (const std::string options : {"", " --align", " --bounds 500000,4100000,500250,4100300",
+                                    " --product height,density", " --product height,count,p50"}) {
     lie("t_04_04.las", kMostX, most);
     const nlohmann::json truth = make("true.tif", "t_*.las" + options);
     lie("t_04_04.las", kMostX, (least + most) / 2);
@@ -119,6 +120,25 @@ TEST_F(DemOfASurvey, BoxesThatAreTooSmallAreFoundOut) {
     EXPECT_EQ(again["points"], 40'000);
     EXPECT_EQ(again["raster"]["pixels_with_data"], truth["raster"]["pixels_with_data"]);
     EXPECT_TRUE(same("dem.tif", "true.tif")) << options;
+  }
+}
+
+/// Nothing is triangulated, so that no region is compared with its box: the extent is.
+TEST_F(DemOfASurvey, PointsAloneAreReadAgainIfHeadersTellAnotherExtent) {
+  const std::string dem = "spillway dem all.las --resolution 0.25 --product count,p50 -o ";
+  const auto read_again = [&](const std::string& command) {
+    const Result run = work_.run(command);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.err.find("headers tell another extent") != std::string::npos;
+  };
+  EXPECT_FALSE(read_again(dem + "true.tif"));
+  const double most = work_.info("all.las")["extent"]["max"][0];
+  for (const double told : {most + 20, most - 20}) {
+    lie("all.las", kMostX, told);
+    EXPECT_TRUE(read_again(dem + "dem.tif"));
+    EXPECT_TRUE(same("dem.tif", "true.tif"));
+    EXPECT_FALSE(read_again(dem + "late.tif --no-trust-headers"));
+    EXPECT_TRUE(same("late.tif", "true.tif"));
   }
 }
 

@@ -170,5 +170,24 @@ TEST_F(ResidentMemory, IsTheLeastLimitWherePointsAreSorted) {
   EXPECT_LE(peak_of_conversion(pipe), 32 + kBeside);
 }
 
+/// However many points are in one pixel, and however small pixels are.
+TEST_F(ResidentMemory, IsTheLimitForRastersOfPointsBesideGdal) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  constexpr double kOfGdal = 40;
+  generate("3000000 -o in.las");
+  for (const std::string products : {"count,p50,stddev", "count,p50,stddev,height --fill-voids"}) {
+    for (const std::string resolution : {"10000", "0.4"}) {
+      work_.succeed(
+          "spillway dem -q in.las -o a.tif --memory 64M --threads 2 --scratch-folder . "
+          "--stats stats.json --resolution " +
+          resolution + " --product " + products);
+      const auto stats = nlohmann::json::parse(work_.read("stats.json"));
+      EXPECT_LE(peak(stats), 64 + kBeside + kOfGdal) << products << ", " << resolution;
+      EXPECT_GT(stats["raster"]["spilled_bytes"], 0);
+      EXPECT_EQ(stats["raster"]["points_in_pixels"], 3'000'000);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace spillway::test

@@ -217,6 +217,57 @@ TEST_F(Products, ADemIsTheSameOfPointsOfAMeshAndByAProgram) {
   EXPECT_EQ(dem->report().bands, std::vector<std::string>{"height"});
 }
 
+TEST_F(Products, BandsOfPointsHaveNamesAndTheirOwnFaults) {
+  using enum DemProduct;
+  EXPECT_EQ(dem_band_of("max")->product, kMax);
+  EXPECT_EQ(dem_band_of("p99.5")->percentile, 99.5);
+  EXPECT_EQ(name_of(*dem_band_of("p050")), "p50");
+  EXPECT_EQ(name_of({kStddev}), "stddev");
+  for (const char* const none : {"p", "p-1", "p101", "pnan", "p5 ", "percentile", "Max", ""}) {
+    EXPECT_FALSE(dem_band_of(none)) << none;
+  }
+  const DemOptions one{.products = {kPercentile}, .resolution = 1, .percentiles = {50}};
+  std::vector<DemOptions> wrong(6, one);
+  wrong[0].percentiles = {};
+  wrong[1].percentiles = {50, 60};
+  wrong[2].percentiles = {100.5};
+  wrong[3].products = {kPercentile, kPercentile};
+  wrong[3].percentiles = {50, 50};
+  wrong[4].products = {kMax, kMax};
+  wrong[5] = {.products = {kCount, kHeight}, .resolution = 1, .fill_voids = true};
+  for (const DemOptions& options : wrong) {
+    EXPECT_EQ(code_of([&] { create_dem(file("a.tif"), options, context_); }),
+              ErrorCode::kInvalidArgument);
+  }
+}
+
+TEST_F(Products, RastersOfPointsNeedPointsAndNoTriangles) {
+  const DemOptions how{.products = {DemProduct::kMax, DemProduct::kCount}, .resolution = 1};
+  const auto line = points_in_memory(std::vector<Point<3>>{{0, 0, 1}, {1, 1, 2}, {0, 0, 4}});
+  DemPixels pixels;
+  const auto dem = create_dem(pixels, how, context_);
+  const Report report = triangulate(*line, *dem, {}, context_);
+  EXPECT_EQ(report.mesh.points, 3U);
+  EXPECT_EQ(report.mesh.simplices, 0U);
+  EXPECT_THAT(pixels.values, ::testing::ElementsAre(4, 3)) << "of one pixel";
+  EXPECT_EQ(dem->report().points_in_pixels, 3U);
+  EXPECT_EQ(dem->report().pixels_with_points, 1U);
+  const auto of_nothing = create_dem(pixels, how, context_);
+  const auto nothing = points_in_memory(std::vector<Point<3>>{});
+  EXPECT_EQ(code_of([&] { triangulate(*nothing, *of_nothing, {}, context_); }),
+            ErrorCode::kDegenerateInput);
+  const auto resumed = create_dem(pixels, how, context_);
+  const auto again = points_in_memory(std::vector<Point<3>>{{0, 0, 1}});
+  EXPECT_EQ(
+      code_of([&] { triangulate(*again, *resumed, {.resume_folder = file("run")}, context_); }),
+      ErrorCode::kInvalidArgument);
+  const auto of_mesh = create_dem(pixels, how, context_);
+  EXPECT_EQ(code_of([&] {
+              of_mesh->begin({.extent = Extent{{0, 0, 0}, {1, 1, 1}}});
+            }),
+            ErrorCode::kInvalidArgument);
+}
+
 TEST_F(Products, ContoursTellTheirLinesAndTheHeights) {
   const auto points = ramp();
   const auto source = points_in_memory(points);
