@@ -223,13 +223,22 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("smooth", &ContourOptions::smooth)
       .def_readwrite("simplify", &ContourOptions::simplify)
       .def_readwrite("bands", &ContourOptions::bands);
-  py::class_<PictureOptions>(module, "PictureOptions")
-      .def(py::init())
+  py::class_<PictureOptions> picture(module, "PictureOptions");
+  bind_choice(picture, "color", &PictureOptions::colour,
+              {"height", "class", "intensity", "return", "rgb"});
+  picture.def(py::init())
       .def_readwrite("size", &PictureOptions::size)
+      .def_readwrite("triangles", &PictureOptions::triangles)
+      .def_readwrite("ramp", &PictureOptions::ramp)
+      .def_readwrite("legend", &PictureOptions::legend)
+      .def_readwrite("scale_bar", &PictureOptions::scale_bar)
+      .def_readwrite("world_file", &PictureOptions::world_file)
       .def_property("zoom", py::cpp_function(), plane_box_setter(&PictureOptions::zoom))
       .def_readwrite("wireframe", &PictureOptions::wireframe)
       .def_readwrite("exaggerate", &PictureOptions::exaggeration)
       .def_readwrite("view", &PictureOptions::view)
+      .def_readwrite("light", &PictureOptions::light)
+      .def_readwrite("shadows", &PictureOptions::shadows)
       .def_readwrite("transparent", &PictureOptions::transparent)
       .def_readwrite("max_edge", &PictureOptions::max_edge)
       .def("set_slice", [](PictureOptions& options, const std::string& axis, double value) {

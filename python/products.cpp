@@ -94,6 +94,7 @@ py::dict picture(Run& run, const MeshOrigin& origin, const std::string& output,
   const PictureReport& view = sink->report();
   statistics["columns"] = view.columns;
   statistics["rows"] = view.rows;
+  statistics["triangles"] = view.triangles;
   statistics["description"] = view.description;
   statistics["edges_too_small"] = view.edges_too_small;
   return statistics;

@@ -3,14 +3,17 @@
     python3 docs/pictures/draw.py COMMAND [FOLDER] [--points N]
 
 COMMAND is the spillway to run, FOLDER where pictures go (beside this file, if left out). N is the largest set of points
-for resident-border.svg: 1e8, which takes a minute or two. Needs the module spillway and matplotlib.
+for resident-border.svg: 1e8, which takes a minute or two. Needs the module spillway and matplotlib; for page.png also
+Chromium, without which that picture is left as it is.
 """
 
 import argparse
 import json
 import pathlib
+import shutil
 import subprocess
 import tempfile
+import warnings
 
 import matplotlib
 
@@ -36,6 +39,11 @@ def main():
         draw_dem(scene)
         draw_products(scene)
         draw_contours(scene)
+        draw_smooth_contours(scene)
+        draw_bands(scene)
+        draw_colours(scene)
+        draw_aslant(scene)
+        draw_page(scene)
         draw_section(scene)
         draw_border(scene)
         draw_resident_border(scene, int(arguments.points))
@@ -60,6 +68,17 @@ class Scene:
     def pixels(self, **options):
         return spillway.dem(str(self.work / "hills.las"), **options)
 
+    def render(self, inputs, name, *arguments):
+        """A picture that the command draws as it is to be."""
+        self.spillway("render", inputs, "-o", name, *arguments)
+        (self.work / name).replace(self.folder / name)
+
+    def features(self, *arguments):
+        """Lines or polygons of the lowest points."""
+        lowest = ("--thin", "6:lowest", "--force-crs")
+        self.spillway("contour", "hills.las", "-o", "features.geojson", *lowest, *arguments)
+        return json.loads((self.work / "features.geojson").read_text(encoding="utf-8"))["features"]
+
     def save(self, figure, name):
         options = {"metadata": {"Date": None}} if name.endswith(".svg") else {}
         figure.savefig(self.folder / name, bbox_inches="tight", **options)
@@ -67,11 +86,9 @@ class Scene:
 
 
 def draw_mesh(scene):
-    scene.spillway("render", "hills.las", "-o", "relief.png", "--thin", 2, "--max-edge", 40, "--size", 640)
+    scene.render("hills.las", "relief.png", "--thin", 2, "--max-edge", 40, "--size", 640)
     zoom = scene.box(300, 150, 360, 195)
-    scene.spillway("render", "hills.las", "-o", "mesh.png", "--zoom", zoom, "--wireframe", "--size", 520)
-    for name in ("relief.png", "mesh.png"):
-        (scene.work / name).replace(scene.folder / name)
+    scene.render("hills.las", "mesh.png", "--zoom", zoom, "--wireframe", "--size", 520)
 
 
 def draw_dem(scene):
@@ -109,9 +126,7 @@ def draw_products(scene):
 
 def draw_contours(scene):
     """Contours of the lowest points over their shaded relief."""
-    low = ("--thin", "6:lowest")
-    scene.spillway("contour", "hills.las", "-o", "lines.geojson", "--interval", 2, "--force-crs", *low)
-    lines = json.loads((scene.work / "lines.geojson").read_text(encoding="utf-8"))["features"]
+    lines = scene.features("--interval", 2)
     shade = scene.pixels(resolution=1, product="hillshade", thin=(6, "lowest"))
     west, step, _, north, _, _ = shade.geotransform
     rows, columns = shade.values.shape
@@ -126,14 +141,114 @@ def draw_contours(scene):
     scene.save(figure, "contours.png")
 
 
+def draw_smooth_contours(scene):
+    """Contours as they are, and smooth and simple ones."""
+    figure, axes = plt.subplots(1, 2, figsize=(8.4, 3.4))
+    smooth = ("--smooth", 2, "--simplify", 0.2, "--min-length", 20)
+    for axis, title, options in zip(axes, ("as they are", " ".join(map(str, smooth))), ((), smooth)):
+        for line in scene.features("--interval", 1, *options):
+            x, y, *_ = np.array(line["geometry"]["coordinates"]).T
+            axis.plot(x, y, color="#8a4b1f", linewidth=1.2 if line["properties"]["index"] == 1 else 0.6)
+        limits = {"xlim": (scene.x + 90, scene.x + 250), "ylim": (scene.y + 120, scene.y + 240)}
+        axis.set(title=title, xticks=[], yticks=[], aspect="equal", **limits)
+    scene.save(figure, "smooth-contours.png")
+
+
+def draw_bands(scene):
+    """Polygons between heights, filled by their lower one."""
+    bands = scene.features("--interval", 2, "--bands", "--smooth", 2)
+    heights = [band["properties"]["min"] for band in bands]
+    colours = plt.get_cmap("YlGnBu_r")
+    figure, axis = plt.subplots(figsize=(6.4, 4.6))
+    for band, height in zip(bands, heights):
+        polygons = band["geometry"]["coordinates"]
+        for rings in polygons if band["geometry"]["type"] == "MultiPolygon" else [polygons]:
+            rings = [matplotlib.path.Path(np.array(ring)[:, :2], closed=True) for ring in rings]
+            share = (height - min(heights)) / (max(heights) - min(heights))
+            path = matplotlib.path.Path.make_compound_path(*rings)
+            axis.add_patch(matplotlib.patches.PathPatch(path, facecolor=colours(share), edgecolor=INK, linewidth=0.3))
+    limits = {"xlim": (scene.x + 50, scene.x + 370), "ylim": (scene.y + 80, scene.y + 310)}
+    axis.set(xticks=[], yticks=[], aspect="equal", **limits)
+    norm = plt.Normalize(min(heights), max(heights))
+    figure.colorbar(matplotlib.cm.ScalarMappable(norm, colours), ax=axis, shrink=0.8, label="min")
+    scene.save(figure, "bands.png")
+
+
+def write_survey(scene):
+    """The country with classes, returns, intensities and colours, as a survey would have them."""
+    points = spillway.read_points(str(scene.work / "hills.las"))
+    low = spillway.read_points(str(scene.work / "hills.las"), thin=(25, "lowest"))
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".* lie over no triangle of the ground")
+        heights = np.nan_to_num(spillway.height(points, ground=low))
+    rng = np.random.default_rng(3)
+    # Roofs are smooth, trees are not.
+    cells = np.floor(points[:, :2] / 2).astype(int)
+    _, cell = np.unique(cells, axis=0, return_inverse=True)
+    cell = cell.ravel()
+    count = np.bincount(cell)
+    mean = np.bincount(cell, heights) / count
+    rough = np.sqrt(np.maximum(np.bincount(cell, heights**2) / count - mean**2, 0))[cell] > 1
+    ground, low_green, green, high_green, roof = 2, 3, 4, 5, 6
+    kinds = [heights < 1.8, (heights > 3.5) & ~rough, heights < 2.6, heights < 5]
+    classes = np.select(kinds, [ground, roof, low_green, green], high_green)
+    tints = {ground: (150, 140, 95), low_green: (120, 140, 70), green: (80, 120, 55), high_green: (50, 95, 45),
+             roof: (165, 85, 70)}
+    colours = np.array([tints[one] for one in classes]) + rng.normal(0, 5, (len(points), 1))
+    colours += 12 * np.sin(points[:, :1] / 25) * np.cos(points[:, 1:2] / 31)
+    fields = {"classification": "u1", "return_number": "u1", "intensity": "u2", "red": "u2", "green": "u2",
+              "blue": "u2"}
+    survey = np.zeros(len(points), dtype=[(axis, "f8") for axis in "xyz"] + list(fields.items()))
+    survey["x"], survey["y"], survey["z"] = points.T
+    survey["classification"] = classes
+    survey["return_number"] = np.where(rough & (heights > 1), rng.integers(1, 4, len(points)), 1)
+    survey["intensity"] = np.clip(colours.sum(axis=1) * 8 + rng.normal(0, 200, len(points)), 0, 65535)
+    for name, values in zip(("red", "green", "blue"), colours.T):
+        survey[name] = np.clip(values, 0, 255) * 257
+    spillway.convert(survey, str(scene.work / "survey.las"), crs="EPSG:32632")
+
+
+def draw_colours(scene):
+    """What colours can stand for, with words below."""
+    write_survey(scene)
+    box = scene.box(190, 120, 370, 240)
+    figure, axes = plt.subplots(2, 2, figsize=(8.4, 6.2))
+    for axis, colour in zip(axes.flat, ("class", "intensity", "return", "rgb")):
+        words = ("--scale-bar",) if colour == "rgb" else ("--scale-bar", "--legend")
+        how = ("--zoom", box, "--color", colour, "--size", 430)
+        scene.spillway("render", "survey.las", "-o", "colours.png", *how, *words)
+        axis.imshow(plt.imread(scene.work / "colours.png"))
+        axis.set(title=f"--color {colour}")
+        axis.axis("off")
+    figure.tight_layout()
+    scene.save(figure, "colours.png")
+
+
+def draw_aslant(scene):
+    """The country aslant, with light from the side."""
+    view = ("--view", "200,35", "--light", "300,28", "--shadows", "--max-edge", 40)
+    scene.render("survey.las", "aslant.png", *view, "--size", 820)
+
+
+def draw_page(scene):
+    """What a browser shows of a page."""
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if browser is None:
+        print("page.png is left as it is: there is no Chromium")
+        return
+    scene.spillway("render", "hills.las", "-o", "hills.html", "--max-edge", 40)
+    options = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+    options += ["--hide-scrollbars", "--force-device-scale-factor=1", "--window-size=820,560"]
+    options += [f"--user-data-dir={scene.work / 'profile'}", f"--screenshot={scene.folder / 'page.png'}"]
+    address = (scene.work / "hills.html").as_uri() + "#distance=3&elevation=35"
+    subprocess.run([browser, *options, address], check=True, timeout=120, capture_output=True)
+
+
 def draw_section(scene):
     """Houses in space, cut at the height of a table."""
     scene.spillway("generate", "scan", "-n", "1e5", "-o", "houses.las")
     low = spillway.info(str(scene.work / "houses.las")).extent[0]
-    scene.spillway(
-        "render", "houses.las", "--dim", 3, "-o", "section.png", "--slice", f"z={low[2] + 1.2:.2f}", "--size", 640
-    )
-    (scene.work / "section.png").replace(scene.folder / "section.png")
+    scene.render("houses.las", "section.png", "--dim", 3, "--slice", f"z={low[2] + 1.2:.2f}", "--size", 640)
 
 
 def draw_border(scene):

@@ -20,12 +20,16 @@ struct RasterFormat {
 namespace raster_names {
 inline constexpr std::string_view kTif[] = {"tif", "tiff"};
 inline constexpr std::string_view kPng[] = {"png"};
+inline constexpr std::string_view kHtml[] = {"html", "htm"};
 }  // namespace raster_names
 
-/// Of values, which raster_file.h writes.
+/// Of values or colours, which raster_file.h writes.
 inline constexpr RasterFormat kGeoTiff = {.name = "tif", .extensions = raster_names::kTif};
 
 /// Of colours, which png.h writes.
 inline constexpr RasterFormat kPng = {.name = "png", .extensions = raster_names::kPng};
+
+/// Of heights in a page for browsers, which pages/relief_page.h writes.
+inline constexpr RasterFormat kHtml = {.name = "html", .extensions = raster_names::kHtml};
 
 }  // namespace spillway::formats

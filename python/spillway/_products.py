@@ -365,16 +365,24 @@ def render(
     *,
     dim: int = 2,
     size: int | None = None,
+    triangles: int | None = None,
     zoom: Sequence[float] | None = None,
+    color: str | None = None,
+    ramp: str | None = None,
+    legend: bool = False,
+    scale_bar: bool = False,
+    world_file: bool = False,
     wireframe: bool = False,
     exaggerate: float | None = None,
     view: tuple[float, float] | None = None,
+    light: tuple[float, float] | None = None,
+    shadows: bool = False,
     slice: tuple[str, float] | None = None,
     transparent: bool = False,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> PictureReport:
-    """Draw a picture: a terrain as a relief, tetrahedra as their hull or a slice.
+    """Draw a picture: a terrain as a relief or a page, tetrahedra as their hull or a slice.
 
     As ``spillway render``.
 
@@ -383,19 +391,36 @@ def render(
     inputs : path, sequence of paths, or array_like of shape (n, 3)
         Points, as `triangulate` takes them, or one file of a mesh.
     output : path
-        A PNG.
+        A PNG; FILE.tif, a GeoTIFF; or FILE.html, a page that shows a terrain in three dimensions in any browser.
     dim : {2, 3}, optional
         How points are triangulated: 2, a terrain, or 3, tetrahedra.
     size : int, optional
-        Pixels of the longer side; 1200 by default.
+        Pixels of a PNG's longer side; 1200 by default.
+    triangles : int, optional
+        Triangles that a page shows at most; 500,000 by default.
     zoom : (float, float, float, float), optional
         Show xmin, ymin, xmax, ymax only.
+    color : {"height", "class", "intensity", "return", "rgb"}, optional
+        What the colours of a terrain stand for: its heights, or attributes of its points.
+    ramp : {"relief", "grey", "viridis", "magma", "cividis", "turbo"}, optional
+        Colours of heights or intensities; "relief" and "grey" by default.
+    legend : bool, optional
+        Tell below a PNG of a terrain what its colours stand for.
+    scale_bar : bool, optional
+        Draw below it how long a bar is.
+    world_file : bool, optional
+        Write a world file beside it, FILE.pgw for FILE.png.
     wireframe : bool, optional
         Draw the edges of triangles.
     exaggerate : float, optional
-        Shade a terrain as if it were so many times as high. By default such that slopes are seen.
+        Show a terrain as if it were so many times as high. By default such that slopes are seen.
     view : (float, float), optional
-        Look at tetrahedra from this azimuth and elevation, in degrees; 30 and 25 by default.
+        Look from this azimuth and elevation, in degrees: by default at a terrain from above, at
+        tetrahedra from 30 and 25, at a page from 200 and 40.
+    light : (float, float), optional
+        Light a terrain from this azimuth and altitude, in degrees; 315 and 45 by default.
+    shadows : bool, optional
+        Let a terrain cast shadows.
     slice : (str, float), optional
         Cut tetrahedra by a plane, as ``("z", 0.5)``.
     transparent : bool, optional
@@ -415,7 +440,10 @@ def render(
         As `triangulate`.
     """
     how = _spillway.PictureOptions()
-    put_all(how, {"size": size, "zoom": zoom, "wireframe": wireframe, "view": view})
+    put_all(how, {"size": size, "triangles": triangles, "zoom": zoom, "ramp": ramp})
+    put_all(how, {"color": color, "legend": legend, "scale_bar": scale_bar})
+    put_all(how, {"world_file": world_file, "wireframe": wireframe, "view": view})
+    put_all(how, {"light": light, "shadows": shadows})
     put_all(how, {"exaggerate": exaggerate, "transparent": transparent})
     put_all(how, {"max_edge": options.get("max_edge")})
     if slice is not None:

@@ -168,15 +168,20 @@ class ContourReport(RunReport):
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class PictureReport(RunReport):
-    """What a picture shows, its size in pixels, and the run that made it."""
+    """What a picture shows, its size in pixels, and the run that made it.
+
+    Of a page `columns` and `rows` are those of its heights, and it shows `triangles`.
+    """
 
     columns: int
     rows: int
+    triangles: int
     description: str
     edges_too_small: bool
 
     def _summary(self) -> str:
-        return f"{self.columns} x {self.rows} pixels, {self.description}; {_counts(self)}"
+        pixels = "" if self.triangles else f"{self.columns} x {self.rows} pixels, "
+        return f"{pixels}{self.description}; {_counts(self)}"
 
 
 @dataclasses.dataclass(frozen=True, repr=False)

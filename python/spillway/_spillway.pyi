@@ -154,11 +154,19 @@ class ContourOptions:
     bands: bool
 
 class PictureOptions:
-    size: int
+    size: int | None
+    triangles: int | None
+    color: str
+    ramp: str
+    legend: bool
+    scale_bar: bool
+    world_file: bool
     zoom: tuple[float, float, float, float] | None
     wireframe: bool
     exaggerate: float | None
     view: tuple[float, float] | None
+    light: tuple[float, float] | None
+    shadows: bool
     transparent: bool
     max_edge: float | None
     def set_slice(self, axis: str, value: float) -> None: ...

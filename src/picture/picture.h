@@ -47,6 +47,13 @@ class Picture {
     if (both > 0) set(column, row, mix(colour(column, row), over, opacity / both), both);
   }
 
+  /// Adds transparent rows below.
+  void add_rows(std::uint32_t count) {
+    rows_ += count;
+    bytes_.reserve(std::size_t{columns_} * rows_ * kChannels);
+    bytes_.resize(std::size_t{columns_} * rows_ * kChannels);
+  }
+
   /// Puts everything onto a background.
   void put_onto(const Colour& background) {
     for (std::uint32_t row = 0; row < rows_; ++row) {

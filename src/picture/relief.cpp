@@ -9,18 +9,12 @@
 namespace spillway::picture {
 namespace {
 
-/// From low to high, each lighter than the one before.
-constexpr std::array<Colour, 7> kHeightColours = {{{0.16F, 0.40F, 0.34F},
-                                                   {0.33F, 0.56F, 0.38F},
-                                                   {0.60F, 0.70F, 0.44F},
-                                                   {0.83F, 0.79F, 0.52F},
-                                                   {0.87F, 0.74F, 0.56F},
-                                                   {0.88F, 0.77F, 0.66F},
-                                                   {0.91F, 0.86F, 0.80F}}};
-
 /// What is left of a colour where there is no light, and how near to white it comes in full light.
 constexpr float kDarkest = 0.28F;
 constexpr float kLightest = 0.4F;
+
+/// The part of the light that a full shadow takes.
+constexpr double kShadow = 0.8;
 
 /// Percentiles are taken of at most this many pixels.
 constexpr std::size_t kLargestSample = 1'000'000;
@@ -31,6 +25,10 @@ constexpr std::size_t kLargestSample = 1'000'000;
 constexpr double kShareOfSlopes = 0.6;
 constexpr double kLeastSlope = 0.12;
 constexpr double kLargestSlope = 0.8;
+
+/// The first and the last colour are those of these percentiles: a few spikes do not matter.
+constexpr double kLowShare = 0.02;
+constexpr double kHighShare = 0.98;
 
 constexpr std::size_t kRowsAtATime = 16;
 
@@ -62,19 +60,6 @@ void for_some_pixels(const HeightPixels& heights, const Visit& visit) {
 double rounded_to_two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
   return std::round(value / unit) * unit;
-}
-
-double visible_exaggeration(const HeightPixels& heights, double side) {
-  std::vector<float> slopes;
-  for_some_pixels(heights, [&](std::size_t i) {
-    const Gradient gradient =
-        heights.gradient(static_cast<std::uint32_t>(i % heights.columns()),
-                         static_cast<std::uint32_t>(i / heights.columns()), side);
-    slopes.push_back(static_cast<float>(std::hypot(gradient[0], gradient[1])));
-  });
-  const double slope = slopes.empty() ? 0 : percentile(slopes, kShareOfSlopes);
-  const double factor = std::clamp(slope, kLeastSlope, kLargestSlope) / slope;
-  return slope > 0 && std::isfinite(factor) ? rounded_to_two_digits(factor) : 1;
 }
 
 Colour shaded(const Colour& colour, double brightness, double level_brightness) {
@@ -124,34 +109,54 @@ Gradient HeightPixels::gradient(std::uint32_t column, std::uint32_t row, double 
   return {(column_sum(2) - column_sum(0)) / (8 * side), (row_sum(0) - row_sum(2)) / (8 * side)};
 }
 
-Relief draw_relief(const HeightPixels& heights, const ReliefStyle& style) {
+double visible_exaggeration(const HeightPixels& heights, double side) {
+  std::vector<float> slopes;
+  for_some_pixels(heights, [&](std::size_t i) {
+    const Gradient gradient =
+        heights.gradient(static_cast<std::uint32_t>(i % heights.columns()),
+                         static_cast<std::uint32_t>(i / heights.columns()), side);
+    slopes.push_back(static_cast<float>(std::hypot(gradient[0], gradient[1])));
+  });
+  const double slope = slopes.empty() ? 0 : percentile(slopes, kShareOfSlopes);
+  const double factor = std::clamp(slope, kLeastSlope, kLargestSlope) / slope;
+  return slope > 0 && std::isfinite(factor) ? rounded_to_two_digits(factor) : 1;
+}
+
+HeightRange seen_range(const HeightPixels& heights) {
   std::vector<float> some;
   for_some_pixels(heights, [&](std::size_t i) { some.push_back(heights.height(i)); });
-  const float lowest = some.empty() ? 0 : percentile(some, 0.02);
-  const float highest = some.empty() ? 0 : percentile(some, 0.98);
-  some = {};
-  const double exaggeration =
-      style.exaggeration ? *style.exaggeration : visible_exaggeration(heights, style.pixel_side);
+  if (some.empty()) return {};
+  const float lowest = percentile(some, kLowShare);
+  return {lowest, percentile(some, kHighShare)};
+}
+
+ColourOfPixel colours_by(const HeightPixels& values, const HeightRange& range,
+                         std::span<const Colour> colours) {
+  return [&values, range, colours](std::size_t pixel) {
+    const float way = range.highest - range.lowest;
+    return colour_at(colours, way > 0 ? (values.height(pixel) - range.lowest) / way : 0.5);
+  };
+}
+
+Picture draw_relief(const HeightPixels& heights, const ColourOfPixel& colour,
+                    const ReliefStyle& style) {
+  const double exaggeration = style.exaggeration;
   const Point<3> light = direction_of(style.light);
   const double level = hillshade_of({0, 0}, light);
-  Relief relief{Picture(heights.columns(), heights.rows()), exaggeration, heights.base() + lowest,
-                heights.base() + highest};
+  Picture picture(heights.columns(), heights.rows());
   parallel_for(heights.rows(), kRowsAtATime, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (auto row = static_cast<std::uint32_t>(begin); row < end; ++row) {
       for (std::uint32_t column = 0; column < heights.columns(); ++column) {
         const std::size_t pixel = std::size_t{row} * heights.columns() + column;
         if (heights.samples(pixel) == 0) continue;
         const Gradient slope = heights.gradient(column, row, style.pixel_side);
-        const double brightness =
-            hillshade_of({slope[0] * exaggeration, slope[1] * exaggeration}, light);
-        const double t =
-            highest > lowest ? (heights.height(pixel) - lowest) / (highest - lowest) : 0.5;
-        relief.picture.set(column, row, shaded(colour_at(kHeightColours, t), brightness, level),
-                           heights.coverage(pixel));
+        double brightness = hillshade_of({slope[0] * exaggeration, slope[1] * exaggeration}, light);
+        if (!style.shadows.empty()) brightness *= 1 - kShadow * style.shadows[pixel] / 255;
+        picture.set(column, row, shaded(colour(pixel), brightness, level), heights.coverage(pixel));
       }
     }
   });
-  return relief;
+  return picture;
 }
 
 }  // namespace spillway::picture

@@ -2,7 +2,8 @@
 // A shaded relief: heights as colours, slopes as light and shade.
 
 #include <cstdint>
-#include <optional>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "src/picture/picture.h"
@@ -50,22 +51,37 @@ class HeightPixels {
   bool empty_ = true;
 };
 
-struct ReliefStyle {
-  double pixel_side = 1;                 ///< in units of x and y
-  std::optional<double> exaggeration{};  ///< of slopes; nothing: such that they are seen
-  Light light{};
-};
+/// The factor of slopes that makes light and shade tell much: more than 1 for a plain, less where
+/// heights have a smaller unit than x and y. `side` is the length of a pixel's side.
+double visible_exaggeration(const HeightPixels& heights, double side);
 
-/// A relief, and what it shows how.
-struct Relief {
-  Picture picture;
-  double exaggeration = 1;
-  float lowest = 0;  ///< the heights that have the first and the last colour of the table
+/// Heights above base().
+struct HeightRange {
+  float lowest = 0;
   float highest = 0;
 };
 
-/// Draws the relief. Its colours range from the 2nd to the 98th percentile of the heights. Pixels
-/// without a height are transparent.
-Relief draw_relief(const HeightPixels& heights, const ReliefStyle& style);
+/// The 2nd and the 98th percentile of the heights; 0 and 0 if there are none.
+HeightRange seen_range(const HeightPixels& heights);
+
+struct ReliefStyle {
+  double pixel_side = 1;    ///< in units of x and y
+  double exaggeration = 1;  ///< of slopes
+  Light light{};
+  /// Of each pixel, how much of the light it does not get, from 0 to 255; empty: all get all of it.
+  std::span<const std::uint8_t> shadows{};
+};
+
+/// The colour of a pixel in the light of a level place.
+using ColourOfPixel = std::function<Colour(std::size_t pixel)>;
+
+/// Colours by values such as heights: from the first colour for the range's lowest one to the last
+/// one. `values` and what `colours` is a view of must outlive it.
+ColourOfPixel colours_by(const HeightPixels& values, const HeightRange& range,
+                         std::span<const Colour> colours);
+
+/// Draws the relief. Pixels without a height are transparent.
+Picture draw_relief(const HeightPixels& heights, const ColourOfPixel& colour,
+                    const ReliefStyle& style);
 
 }  // namespace spillway::picture

@@ -9,12 +9,18 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/disk/scratch_folder.h"
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/points/attributes/attribute_layout.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "src/geometry/pixel_grid.h"
+#include "src/picture/legend.h"
 #include "src/picture/picture.h"
+#include "src/picture/ramps.h"
+#include "src/terrain/pixel_values.h"
 
 namespace spillway::stream {
 
@@ -40,6 +46,10 @@ class Scene {
   [[nodiscard]] bool edges_too_small() const { return edges_too_small_; }
   /// Simplices with too long an edge.
   [[nodiscard]] virtual std::uint64_t left_out() const = 0;
+  /// After draw(): what colours stand for; nothing if they are as things look.
+  [[nodiscard]] virtual std::optional<Legend> legend() const { return std::nullopt; }
+  /// Where the pixels lie, if the picture is a map.
+  [[nodiscard]] virtual std::optional<PixelGrid> place() const { return std::nullopt; }
 
  protected:
   bool edges_too_small_ = false;
@@ -49,6 +59,7 @@ class Scene {
 struct SceneMesh {
   std::optional<IntegerLattice> lattice;
   std::optional<double> max_edge;  ///< leave out simplices with a longer edge
+  AttributeLayout attributes;      ///< that vertices carry
 };
 
 /// Margin around what is shown, in pixels, unless there is a zoom.
@@ -59,6 +70,25 @@ inline constexpr std::uint32_t kMargin = 6;
 inline float edge_strength(double pixels) {
   return static_cast<float>(std::clamp((pixels - 4) / 8, 0.0, 1.0));
 }
+
+/// Pixels of the longer side.
+inline std::uint32_t picture_size(const PictureOptions& options) {
+  return options.size.value_or(kUsualPictureSize);
+}
+
+/// The colours of a terrain's heights or intensities.
+inline const Ramp& ramp_of(const PictureOptions& options) {
+  if (!options.ramp.empty()) return *find_ramp(options.ramp);
+  return options.colour == PictureColour::kIntensity ? *find_ramp("grey") : all_ramps().front();
+}
+
+/// Where light on a terrain comes from.
+inline Light light_of(const PictureOptions& options) {
+  return options.light ? Light{(*options.light)[0], (*options.light)[1]} : Light{};
+}
+
+/// The names of the attributes that colours stand for; none for heights.
+std::vector<std::string> attributes_of(PictureColour colour);
 
 /// A shaded relief of triangles. Of `memory` its pixels may take so much while triangles come.
 /// Throws InvalidArgument for options that are only for tetrahedra.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
+#include <utility>
 
 namespace spillway::stream {
 
@@ -30,11 +32,15 @@ std::vector<std::uint32_t> RestOfBlock::divide(MeshStreamBlock& block, std::size
   auto absorbed = std::make_shared<RestOfBlock>();
   absorbed->announced_ = announced;
   std::vector<LatticePoint> vertices;
+  std::vector<std::byte> attributes;
+  const std::size_t record_size = announced > 0 ? block.attributes.size() / announced : 0;
   std::vector<std::uint32_t> number_left(announced);
   for (std::uint32_t v = 0; v < announced; ++v) {
     if (is_left[v] == 0) continue;
     number_left[v] = static_cast<std::uint32_t>(vertices.size());
     vertices.push_back(block.vertices[v]);
+    const auto record = std::span(block.attributes).subspan(v * record_size, record_size);
+    attributes.insert(attributes.end(), record.begin(), record.end());
     absorbed->places_.push_back(v);
   }
   const auto left = static_cast<std::uint32_t>(vertices.size());
@@ -51,7 +57,7 @@ std::vector<std::uint32_t> RestOfBlock::divide(MeshStreamBlock& block, std::size
   block.corners = std::move(rest);
   block.finalized = std::move(finalized);
   block.input_index = {};
-  block.attributes = {};
+  block.attributes = std::move(attributes);
   return inner;
 }
 

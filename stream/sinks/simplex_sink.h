@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -40,7 +41,7 @@ class SimplexSink : public BlockSink {
   explicit SimplexSink(int dimension) : corners_(static_cast<std::size_t>(dimension) + 1) {}
 
   void absorb(MeshStreamBlock& block) final {
-    const std::vector<Value> values = values_of(block.vertices);
+    const std::vector<Value> values = values_with(block.vertices, block.attributes);
     const std::vector<std::uint32_t> corners = RestOfBlock::divide(block, corners_);
     take_vertices(values);
     take_simplices(values, corners);
@@ -49,7 +50,7 @@ class SimplexSink : public BlockSink {
   void write(MeshStreamBlock&& block) final {
     if (!block.absorbed) absorb(block);
     const auto& rest = static_cast<const RestOfBlock&>(*block.absorbed);
-    std::vector<Value> values = values_of(block.vertices);
+    std::vector<Value> values = values_with(block.vertices, block.attributes);
     std::vector<std::uint64_t> numbers(values.size());
     for (std::size_t v = 0; v < values.size(); ++v) {
       numbers[v] = live_.announced() + rest.place(v);
@@ -84,6 +85,11 @@ class SimplexSink : public BlockSink {
   /// What vertices, as they come, are. By many threads at once, as what follows.
   [[nodiscard]] virtual std::vector<Value> values_of(
       std::span<const LatticePoint> vertices) const = 0;
+  /// Likewise of vertices with their attributes: a record each, or none if nobody wants them.
+  [[nodiscard]] virtual std::vector<Value> values_with(
+      std::span<const LatticePoint> vertices, std::span<const std::byte> /*attributes*/) const {
+    return values_of(vertices);
+  }
   /// Each vertex comes once.
   virtual void take_vertices(std::span<const Value> values) = 0;
   /// Each simplex comes once: the places of its corners in `values`.

@@ -69,7 +69,7 @@ class PolygonScene : public Scene {
 
  private:
   [[nodiscard]] PixelGrid frame_of(const std::vector<SeenPolygon>& polygons) const {
-    if (options_.zoom) return frame_around(plane_box(*options_.zoom), options_.size, 0);
+    if (options_.zoom) return frame_around(plane_box(*options_.zoom), picture_size(options_), 0);
     Box<2> box;
     for (const SeenPolygon& polygon : polygons) {
       for (int i = 0; i < polygon.count; ++i) {
@@ -80,7 +80,7 @@ class PolygonScene : public Scene {
       throw Failure("nothing is seen: what is to be drawn has no area",
                     ErrorCode::kDegenerateInput);
     }
-    return frame_around(box, options_.size, kMargin);
+    return frame_around(box, picture_size(options_), kMargin);
   }
 
   const PictureOptions options_;
@@ -208,6 +208,15 @@ class SliceScene : public PolygonScene {
 std::unique_ptr<Scene> make_space_scene(const PictureOptions& options, const SceneMesh& mesh) {
   if (options.exaggeration) {
     throw InvalidArgument("heights are exaggerated of terrains, and these are tetrahedra");
+  }
+  if (!options.ramp.empty() || options.colour != PictureColour::kHeight) {
+    throw InvalidArgument("colours are chosen of terrains, and these are tetrahedra");
+  }
+  if (options.light || options.shadows) {
+    throw InvalidArgument("light and shadows are chosen of terrains, and these are tetrahedra");
+  }
+  if (options.legend || options.scale_bar || options.world_file) {
+    throw InvalidArgument("a legend, a scale bar and a world file are of terrains");
   }
   if (!options.slice) {
     if (options.zoom) throw InvalidArgument("a zoom is of terrains and slices, and this is a hull");

@@ -124,7 +124,7 @@ case $what in
     install_and_move
     nm -DC --defined-only "$(find "$prefix" -name libspillway.so)" | cut -d' ' -f3- >"$work/symbols"
     grep -q '^spillway::Delaunay<3, int>::locate' "$work/symbols" || fail "locate is not exported"
-    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[2-6], (int|long)>|Error|Context|PointSource|PointSink|MeshSource|MeshSink|MeshInMemory|DemSink|ContourSink|PictureSink|VolumeBetween|LevelVolumeSink|ProductShare|AttributeColumns)(::|$)|^spillway::(to_string|version|describe|kind_of_input|stands_for_several|expand_inputs|open_points|points_in_memory|names_in_condition|create_points|generate_points|generate_grid|point_families|open_mesh|create_mesh|mesh_to|triangulate|convert|check|describe_points|describe_mesh|dem_product_names|dem_band_of|name_of|traits_of|create_dem|create_contours|create_picture|create_product|measure_heights|open_above_ground|measure_between|measure_above)[[(]' \
+    if grep -vE '^((typeinfo|typeinfo name|vtable) for )?spillway::(Delaunay<[2-6], (int|long)>|Error|Context|PointSource|PointSink|MeshSource|MeshSink|MeshInMemory|DemSink|ContourSink|PictureSink|VolumeBetween|LevelVolumeSink|ProductShare|AttributeColumns)(::|$)|^spillway::(to_string|version|describe|kind_of_input|stands_for_several|expand_inputs|open_points|points_in_memory|names_in_condition|create_points|generate_points|generate_grid|point_families|open_mesh|create_mesh|mesh_to|triangulate|convert|check|describe_points|describe_mesh|dem_product_names|dem_band_of|name_of|traits_of|ramp_names|create_dem|create_contours|create_picture|create_product|measure_heights|open_above_ground|measure_between|measure_above)[[(]' \
       "$work/symbols"; then
       fail "is exported, too"
     fi

@@ -217,6 +217,17 @@ class Pictures(InFolder):
                 "--zoom 500100,4100100,500200,4100200",
                 {"zoom": (500100, 4100100, 500200, 4100200)},
             ),
+            ("hills.las", "--ramp magma --legend", {"ramp": "magma", "legend": True}),
+            (
+                "hills.las",
+                "--color return --scale-bar --world-file",
+                {"color": "return", "scale_bar": True, "world_file": True},
+            ),
+            (
+                "hills.las",
+                "--view 200,35 --light 90,20 --shadows",
+                {"view": (200, 35), "light": (90, 20), "shadows": True},
+            ),
             ("cloud.npy", "--dim 3 --view 120,30", {"dim": 3, "view": (120, 30)}),
             ("cloud.npy", "--dim 3 --slice z=0.5", {"dim": 3, "slice": ("z", 0.5)}),
         ]
@@ -226,6 +237,18 @@ class Pictures(InFolder):
                 report = spillway.render(inputs, "b.png", size=150, **options)
                 self.assertEqual(bytes_of("b.png"), bytes_of("a.png"))
                 self.assertEqual(max(report.columns, report.rows), 150)
+                if "world_file" in options:
+                    self.assertEqual(bytes_of("b.pgw"), bytes_of("a.pgw"))
+
+    def test_pages_are_those_of_the_command(self):
+        command("generate", "terrain", "-n", 5000, "-o", "hills.las")
+        os.mkdir("a")
+        options = ("--triangles", 2000, "--view", "90,50", "--exaggerate", 2)
+        command("render", "hills.las", "-o", "a/page.html", *options)
+        report = spillway.render("hills.las", "page.html", triangles=2000, view=(90, 50), exaggerate=2)
+        self.assertEqual(bytes_of("page.html"), bytes_of("a/page.html"))
+        self.assertGreater(report.triangles, 1000)
+        self.assertIn("triangles on", str(report))
 
     def test_wrong_values(self):
         points = random_points(100, 3)

@@ -75,8 +75,15 @@ else()
 endif()
 
 spillway_command_test(cli_render_tests cli
+  tools/commands/cli_render_colours_test.cpp tools/commands/cli_render_page_test.cpp
   tools/commands/cli_render_test.cpp)
 target_link_libraries(cli_render_tests PRIVATE PNG::PNG)
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_test(NAME Render.PagesInABrowser
+    COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/commands/page_in_browser.py $<TARGET_FILE:spillway>)
+  set_tests_properties(Render.PagesInABrowser PROPERTIES LABELS cli TIMEOUT 300 SKIP_RETURN_CODE 77)
+endif()
 
 if(SPILLWAY_MPI)
   spillway_command_test(cli_ranks_tests mpi

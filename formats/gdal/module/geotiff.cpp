@@ -98,6 +98,7 @@ class GeoTiff : public Raster {
     }
     for (std::size_t b = 0; b < options_.bands.size(); ++b) {
       band(b).SetDescription(options_.bands[b].c_str());
+      if (options_.colours) continue;
       if (band(b).SetNoDataValue(options_.nodata) != CE_None) fail(gdal_reason());
     }
   }
@@ -107,7 +108,12 @@ class GeoTiff : public Raster {
     forget_gdal_errors();
     if (of_bytes()) {
       bytes_.resize(pixels.size());
-      std::ranges::transform(pixels, bytes_.begin(), byte_of);
+      const auto as_it_is = [](float value) { return static_cast<std::uint8_t>(value); };
+      if (options_.colours) {
+        std::ranges::transform(pixels, bytes_.begin(), as_it_is);
+      } else {
+        std::ranges::transform(pixels, bytes_.begin(), byte_of);
+      }
     }
     const void* const block = of_bytes() ? static_cast<const void*>(bytes_.data()) : pixels.data();
     // Straight to the file: nothing is left to a cache that writes in an order of its own.
@@ -124,7 +130,9 @@ class GeoTiff : public Raster {
   }
 
  private:
-  [[nodiscard]] bool of_bytes() const { return options_.type == PixelType::kByte; }
+  [[nodiscard]] bool of_bytes() const {
+    return options_.colours || options_.type == PixelType::kByte;
+  }
 
   [[nodiscard]] GDALRasterBand& band(std::size_t number) {
     return *file_->GetRasterBand(static_cast<int>(number) + 1);
@@ -138,6 +146,10 @@ class GeoTiff : public Raster {
     creation.SetNameValue("INTERLEAVE", "BAND");
     creation.SetNameValue("BIGTIFF", "IF_SAFER");
     creation.SetNameValue("NUM_THREADS", fmt::format("{}", threads_).c_str());
+    if (options_.colours) {
+      creation.SetNameValue("PHOTOMETRIC", "RGB");
+      creation.SetNameValue("ALPHA", "NON-PREMULTIPLIED");
+    }
     if (options_.compression == "none") return creation;
     creation.SetNameValue("COMPRESS", upper(options_.compression).c_str());
     creation.SetNameValue("PREDICTOR", of_bytes() ? "2" : "3");

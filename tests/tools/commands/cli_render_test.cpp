@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <png.h>
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
-#include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/commands/opened_picture.h"
 #include "tests/tools/inputs/halved_box.h"
 
 namespace spillway::test {
@@ -20,51 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A picture as libpng reads it.
-class Opened {
- public:
-  Opened(const Workspace& work, const std::string& name) {
-    const std::string bytes = work.read(name);
-    std::memset(&image_, 0, sizeof image_);
-    image_.version = PNG_IMAGE_VERSION;
-    if (png_image_begin_read_from_memory(&image_, bytes.data(), bytes.size()) == 0) {
-      ADD_FAILURE() << name << ": " << image_.message;
-      return;
-    }
-    has_opacity_ = (image_.format & PNG_FORMAT_FLAG_ALPHA) != 0;
-    image_.format = PNG_FORMAT_RGBA;
-    pixels_.resize(PNG_IMAGE_SIZE(image_));
-    EXPECT_NE(png_image_finish_read(&image_, nullptr, pixels_.data(), 0, nullptr), 0);
-  }
-
-  [[nodiscard]] int columns() const { return static_cast<int>(image_.width); }
-  [[nodiscard]] int rows() const { return static_cast<int>(image_.height); }
-  [[nodiscard]] bool has_opacity() const { return has_opacity_; }
-  [[nodiscard]] int opacity(int column, int row) const { return pixels_[offset(column, row) + 3]; }
-  /// Red, green and blue together: 0 to 765.
-  [[nodiscard]] int brightness(int column, int row) const {
-    const std::size_t at = offset(column, row);
-    return pixels_[at] + pixels_[at + 1] + pixels_[at + 2];
-  }
-  [[nodiscard]] int count_opaque() const {
-    int count = 0;
-    for (int row = 0; row < rows(); ++row) {
-      for (int column = 0; column < columns(); ++column) {
-        if (opacity(column, row) == 255) ++count;
-      }
-    }
-    return count;
-  }
-
- private:
-  [[nodiscard]] std::size_t offset(int column, int row) const {
-    return (static_cast<std::size_t>(row) * columns() + column) * 4;
-  }
-
-  png_image image_{};
-  bool has_opacity_ = false;
-  std::vector<png_byte> pixels_;
-};
+using Opened = OpenedPicture;
 
 /// Expects one run of visible pixels in each row: what is triangulated is convex.
 void expect_no_holes(const Opened& picture) {
@@ -198,6 +152,61 @@ TEST(Render, ThreadsTilesAndWaysThroughMeshesGiveTheSameBytes) {
   }
 }
 
+TEST(Render, AViewOfATerrainIsAsHighAsItIsTilted) {
+  const Workspace work;
+  work.write("plain.txt", "0 0 5\n200 0 5\n0 100 5\n200 100 5\n");
+  for (const int elevation : {10, 30, 90}) {
+    work.succeed(
+        fmt::format("spillway render -q plain.txt -o view.png --size 412 --transparent "
+                    "--view 180,{}",
+                    elevation));
+    const Opened view(work, "view.png");
+    EXPECT_EQ(view.columns(), 412);
+    EXPECT_NEAR(view.rows(), 12 + 200 * std::sin(elevation * M_PI / 180), 3);
+    EXPECT_NEAR(view.count_opaque(), 400 * (view.rows() - 12), 1000);
+  }
+}
+
+TEST(Render, ShadowsFallAwayFromTheLightAndNothingElseChanges) {
+  const Workspace work;
+  std::string tower;
+  for (int i = 0; i < 101 * 101; ++i) {
+    const int x = i % 101;
+    const int y = i / 101;
+    tower +=
+        fmt::format("{} {} {}\n", x, y, std::max(std::abs(x - 50), std::abs(y - 50)) < 4 ? 15 : 0);
+  }
+  work.write("tower.txt", tower);
+  const std::string command =
+      "spillway render -q tower.txt --size 412 --exaggerate 1 --light 270,30 ";
+  work.succeed(command + "-o light.png\n" + command + "-o shadow.png --shadows");
+  const Opened light(work, "light.png");
+  const Opened shadow(work, "shadow.png");
+  // 4 pixels a unit: from 53 to 53 + 15 / tan(30) = 79 in the east.
+  for (int x = 10; x < 98; ++x) {
+    if (x > 45 && x < 56) continue;
+    const int column = 6 + 4 * x;
+    if (x < 77) {
+      const int less = light.brightness(column, 206) - shadow.brightness(column, 206);
+      EXPECT_EQ(less > 100, x > 50) << x;
+    }
+    if (x > 81) {
+      EXPECT_EQ(light.brightness(column, 206), shadow.brightness(column, 206)) << x;
+    }
+    EXPECT_EQ(light.brightness(column, 100), shadow.brightness(column, 100)) << x;
+  }
+}
+
+TEST(Render, ViewsAndShadowsHaveTheSameBytesForAllThreads) {
+  const Workspace work;
+  const std::string how = " --size 300 --shadows --view 200,30 --wireframe -q ";
+  work.succeed(
+      "spillway generate -q terrain -n 30000 -o in.las\n"
+      "spillway render in.las -o one.png --threads 1" +
+      how + "\nspillway render in.las -o two.png --threads 2 --tile-points 2000" + how);
+  EXPECT_TRUE(work.read("one.png") == work.read("two.png"));
+}
+
 TEST(Render, ATerrainHasNoHoles) {
   const Workspace work;
   work.succeed(
@@ -323,8 +332,10 @@ TEST_P(RenderRefuses, AndLeavesNothing) {
 }
 
 constexpr std::array kRefused = {
-    Refused{"AnotherFormat", "points.txt -o view.jpg", 2, ".png only"},
-    Refused{"NoExtension", "points.txt -o view", 2, ".png only"},
+    Refused{"AnotherFormat", "points.txt -o view.jpg", 2,
+            "a picture is a .png or a .tif, and a page is an .html"},
+    Refused{"NoExtension", "points.txt -o view", 2,
+            "a picture is a .png or a .tif, and a page is an .html"},
     Refused{"MissingFolder", "points.txt -o no/view.png", 1, "create the folder"},
     Refused{"ZoomWithoutArea", "points.txt -o view.png --zoom 1,1,1,5", 2, "--zoom"},
     Refused{"ZoomOfThreeNumbers", "points.txt -o view.png --zoom 1,1,5", 2, "--zoom"},
@@ -335,7 +346,14 @@ constexpr std::array kRefused = {
     Refused{"TooLittleMemory", "points.txt -o view.png --memory 32M", 2, "--memory"},
     Refused{"NegativeExaggeration", "points.txt -o view.png --exaggerate=-1", 2, "--exaggerate"},
     Refused{"SliceOfATerrain", "points.txt -o view.png --slice z=1", 2, "a slice is of tetrahedra"},
-    Refused{"ViewOfATerrain", "tin.obj -o view.png --view 30,25", 2, "a view is of tetrahedra"},
+    Refused{"ViewOfATerrainFromBelow", "tin.obj -o view.png --view 30,-5", 2, "seen from above"},
+    Refused{"LightFromBelow", "points.txt -o view.png --light 30,-5", 2, "--light"},
+    Refused{"LightInSpace", "points.txt --dim 3 -o view.png --light 30,5", 2, "chosen of terrains"},
+    Refused{"ShadowsInSpace", "points.txt --dim 3 -o view.png --shadows", 2, "chosen of terrains"},
+    Refused{"ScaleBarAslant", "points.txt -o view.png --view 30,5 --scale-bar", 2, "is of a map"},
+    Refused{"WorldFileAslant", "points.txt -o view.png --view 30,5 --world-file", 2, "is of a map"},
+    Refused{"GeoTiffAslant", "points.txt -o view.tif --view 30,5", 2, "is of a map"},
+    Refused{"ShadowsOfAPage", "points.txt -o view.html --shadows", 2, "no cast shadows"},
     Refused{"SliceIsNoPlane", "points.txt --dim 3 -o view.png --slice w=1", 2, "not a plane"},
     Refused{"SliceIsNoNumber", "points.txt --dim 3 -o view.png --slice z=high", 2, "not a plane"},
     Refused{"SliceBesideTheMesh", "points.txt --dim 3 -o view.png --slice z=50", 1,

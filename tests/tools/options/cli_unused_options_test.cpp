@@ -148,7 +148,8 @@ INSTANTIATE_TEST_SUITE_P(
                "heights are exaggerated of terrains"},
         Unused{"ZoomToAHull", "render space.npy --dim 3 -o a.png --zoom 0,0,1,1",
                "a zoom is of terrains and slices"},
-        Unused{"ViewOfATerrain", "render in.las -o a.png --view 30,20", "a view is of tetrahedra"},
+        Unused{"ShadowsInSpace", "render space.npy --dim 3 -o a.png --shadows",
+               "light and shadows are chosen of terrains"},
         Unused{"SliceOfATerrain", "render in.las -o a.png --slice z=380",
                "a slice is of tetrahedra"}),
     name_of);

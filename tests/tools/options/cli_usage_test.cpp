@@ -241,9 +241,9 @@ bool is_good(const std::string& option, const std::string& value) {
            option == "--max-height";
   }
   return value == "1,5" &&
-         (option == "--levels" || option == "--view" || option == "--returns" ||
-          option == "--keep-class" || option == "--columns" || option == "--drop-class" ||
-          option == "--ground-class" || option == "--simulate-cores");
+         (option == "--levels" || option == "--view" || option == "--light" ||
+          option == "--returns" || option == "--keep-class" || option == "--columns" ||
+          option == "--drop-class" || option == "--ground-class" || option == "--simulate-cores");
 }
 
 TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {

@@ -183,6 +183,14 @@ TEST_F(Products, WhatCannotBeIsRefusedBeforeAnythingIsRead) {
             ErrorCode::kInvalidArgument);
   EXPECT_EQ(code_of([&] { create_picture(file("a.png"), {.size = 3}, context_); }),
             ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([&] { create_picture(file("a.png"), {.ramp = "rainbow"}, context_); }),
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([&] { create_picture(file("a.png"), {.triangles = 5000}, context_); }),
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([&] { create_picture(file("a.html"), {.size = 500}, context_); }),
+            ErrorCode::kInvalidArgument);
+  EXPECT_EQ(code_of([&] { create_picture(file("a.html"), {.triangles = 999}, context_); }),
+            ErrorCode::kInvalidArgument);
   EXPECT_EQ(code_of([&] { create_picture(file("a.png"), {.size = 20'000}, context_); }),
             ErrorCode::kOutOfBudget)
       << "more pixels than memory";
