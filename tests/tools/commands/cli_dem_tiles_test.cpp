@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -163,6 +165,33 @@ TEST_F(DemTiles, AppearWhileTheRunGoesOn) {
   EXPECT_GE(tiles(), early);
   EXPECT_EQ(work_.run("ls -A out | grep -v 'tif$'").out, "");
   work_.succeed("for f in out/*.tif; do gdalinfo -checksum $f > /dev/null || exit 1; done");
+}
+
+TEST_F(DemTiles, OfARunThatIsKilledAreThoseOfAWholeOneAfterResume) {
+  work_.succeed("spillway generate terrain -n 2000000 --seed 3 -q -o large.las; mkdir a b");
+  const std::string how =
+      " --resolution 0.5 --tiles 50 --product height,slope --tile-points 50000 -q";
+  work_.succeed("spillway dem large.las -o 'a/d_{x}_{y}.tif'" + how);
+  const std::string command =
+      "dem large.las -o b/d_{x}_{y}.tif --resume folder --checkpoint-every 0" + how;
+  std::istringstream words(command);
+  const std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
+  const auto tiles = [this] { return std::stoi(work_.run("ls b | grep -c 'tif$' || true").out); };
+  for (int kills = 0; kills < 2; ++kills) {
+    const int before = tiles();
+    const pid_t process = work_.start(arguments);
+    for (int i = 0; i < 2000 && tiles() == before; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    kill(process, SIGKILL);
+    (void)wait_for_exit(process);
+  }
+  ASSERT_GT(tiles(), 0);
+  work_.succeed(
+      "rm -rf b/*.part; spillway dem large.las -o 'b/d_{x}_{y}.tif' --resume folder "
+      "--checkpoint-every 0" +
+      how);
+  work_.succeed("diff -rq a b");
 }
 
 TEST_F(DemTiles, WarnsOfFilesThatLookLikeTilesOfTheRun) {
