@@ -30,7 +30,7 @@ struct RasterOptions {
   PixelType type = PixelType::kFloat32;  ///< bytes: values are rounded to 1 to 255; nodata is 0
   /// Bytes as they are, without nodata: of four bands, red, green, blue and opacity.
   bool colours = false;
-  std::string compression = "deflate";   ///< "deflate", "zstd", "none"
+  std::string compression = "deflate";  ///< "deflate", "zstd", "none"
   /// With overviews, in the order that a Cloud Optimized GeoTIFF has. Beside `path` a second file
   /// is made and removed.
   bool cloud_optimized = false;

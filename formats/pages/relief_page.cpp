@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <memory>
+
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/json.h"
 #include "formats/pages/base64.h"
@@ -62,12 +65,10 @@ Json own_colours_of(const PageColours& own) {
   for (const PageColours::Entry& entry : own.entries) {
     entries.push_back({{"text", entry.text}, {"colour", css_colour(entry.colour)}});
   }
-  return {{"name", own.name},
-          {"facts", own.facts},
-          {"entries", entries},
-          {"nodes", to_base64(std::as_bytes(own.nodes))}};
+  return {{"name", own.name}, {"facts", own.facts}, {"entries", entries}};
 }
 
+/// All but what each node has.
 Json relief_of(const ReliefPage& page) {
   return {{"facts", page.facts},
           {"columns", page.columns},
@@ -81,33 +82,63 @@ Json relief_of(const ReliefPage& page) {
           {"light", page.light},
           {"ramps", ramps_of(page)},
           {"ramp", page.ramp},
-          {"own", own_colours_of(page.own)},
-          {"heights", to_base64(std::as_bytes(page.heights))}};
+          {"own", own_colours_of(page.own)}};
 }
+
+/// What is encoded at a time, in bytes: groups of three.
+constexpr std::size_t kPiece = std::size_t{3} << 18;
+
+/// A page that is being written.
+class PageOutput {
+ public:
+  PageOutput(FileSystem& files, const std::string& path) : file_(files.create(path)) {}
+
+  void write(std::string_view text) {
+    file_->write(as_bytes_of(text));
+    bytes_ += text.size();
+  }
+
+  /// Writes a further member of an object that is open.
+  void write_member(std::string_view name, std::span<const std::byte> bytes) {
+    write(fmt::format(",\"{}\":\"", name));
+    for (std::size_t i = 0; i < bytes.size(); i += kPiece) {
+      write(to_base64(bytes.subspan(i, std::min(kPiece, bytes.size() - i))));
+    }
+    write("\"");
+  }
+
+  std::uint64_t commit() {
+    file_->commit();
+    return bytes_;
+  }
+
+ private:
+  std::unique_ptr<OutputFile> file_;
+  std::uint64_t bytes_ = 0;
+};
 
 }  // namespace
 
 std::uint64_t write_relief_page(FileSystem& files, const std::string& path,
                                 const ReliefPage& page) {
-  const auto file = files.create(path);
-  std::uint64_t bytes = 0;
-  const auto write = [&](std::string_view text) {
-    file->write(as_bytes_of(text));
-    bytes += text.size();
-  };
+  PageOutput output(files, path);
   std::string_view rest = relief_html();
   const auto write_until = [&](std::string_view mark) {
     const std::size_t place = rest.find(mark);
-    write(rest.substr(0, place));
+    output.write(rest.substr(0, place));
     rest.remove_prefix(place + mark.size());
   };
   write_until("{{title}}");
-  write(escaped(page.title));
+  output.write(escaped(page.title));
   write_until("{{relief}}");
-  write(in_script(relief_of(page)));
-  write(rest);
-  file->commit();
-  return bytes;
+  std::string relief = in_script(relief_of(page));
+  relief.pop_back();  // its object goes on
+  output.write(relief);
+  output.write_member("heights", std::as_bytes(page.heights));
+  if (!page.own.name.empty()) output.write_member("tints", std::as_bytes(page.own.nodes));
+  output.write("}");
+  output.write(rest);
+  return output.commit();
 }
 
 }  // namespace spillway::formats

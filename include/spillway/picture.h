@@ -49,8 +49,8 @@ struct PictureOptions {
   /// page shows it so high.
   std::optional<double> exaggeration{};
   /// From where one looks: azimuth, clockwise from north (y), and elevation above the horizon, in
-  /// degrees. Of a terrain above 0: seen aslant, its heights exaggerated; empty: from above. Not of a
-  /// slice.
+  /// degrees. Of a terrain above 0: seen aslant, its heights exaggerated; empty: from above. Not of
+  /// a slice.
   std::optional<std::array<double, 2>> view{};
   /// Of a terrain, likewise where light comes from, from 0 to 90 degrees above the horizon; empty:
   /// 315 and 45.
@@ -82,13 +82,13 @@ class SPILLWAY_API PictureSink : public MeshSink {
 };
 
 /// A picture as PNG; "-" is standard output. Where the name ends in .tif, a GeoTIFF of a terrain,
-/// with its coordinate system and a band of opacity. Where the name ends in .html, a page: one file that
-/// shows a terrain in three dimensions in any browser, thinned to a grid of heights. It gets its
-/// name when it is complete. Throws Error: kInvalidArgument for options that cannot be, or that the
-/// mesh or the format at hand does not have; kOutOfBudget for a memory limit below 64 MiB, or below
-/// twice the picture's 16 bytes a pixel (of a page, 8 bytes a triangle);
-/// kInputOutput; kDegenerateInput where nothing is seen. Of a mesh that tells no extent, a
-/// program's own, a relief needs a zoom.
+/// with its coordinate system and a band of opacity. Where the name ends in .html, a page: one file
+/// that shows a terrain in three dimensions in any browser, thinned to a grid of heights. It gets
+/// its name when it is complete. Throws Error: kInvalidArgument for options that cannot be, or that
+/// the mesh or the format at hand does not have; kOutOfBudget for a memory limit below 64 MiB, or
+/// below twice what the picture takes (16 bytes a pixel, 24 with the colours of attributes, 10 more
+/// aslant or with shadows; of a page 8 or 18 bytes a triangle); kInputOutput; kDegenerateInput
+/// where nothing is seen. Of a mesh that tells no extent, a program's own, a relief needs a zoom.
 SPILLWAY_API std::unique_ptr<PictureSink> create_picture(const std::string& path,
                                                          const PictureOptions& options,
                                                          const Context& context);

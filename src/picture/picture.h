@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -69,7 +70,7 @@ class Picture {
     return (std::size_t{row} * columns_ + column) * kChannels;
   }
   static std::uint8_t to_byte(float share) {
-    return static_cast<std::uint8_t>(std::clamp(share, 0.0F, 1.0F) * 255 + 0.5F);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(share, 0.0F, 1.0F) * 255));
   }
 
   std::uint32_t columns_;

@@ -18,8 +18,8 @@ std::uint32_t text_width(std::string_view text, std::uint32_t scale);
 void fill_box(Picture& picture, std::uint32_t column, std::uint32_t row, std::uint32_t columns,
               std::uint32_t rows, const Colour& colour);
 
-/// Draws small letters, digits, points, plus and minus from a pixel on to the right; what else there
-/// is in the text becomes blanks.
+/// Draws small letters, digits, points, plus and minus from a pixel on to the right; what else
+/// there is in the text becomes blanks.
 void draw_text(Picture& picture, std::uint32_t column, std::uint32_t row, std::string_view text,
                std::uint32_t scale, const Colour& colour);
 

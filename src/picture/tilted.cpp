@@ -79,7 +79,7 @@ class Caster {
     const double column = middle_[0] + right * axes_.right[0] + up * axes_.up[0];
     const double row = middle_[1] - right * axes_.right[1] - up * axes_.up[1];
     const double height = up * axes_.up[2];
-    // From the viewer: where the ray comes below the highest place, to where it comes to the lowest.
+    // From where the ray comes to the highest place to where it comes to the lowest.
     double near = (field_.top() + kTouching - height) / towards[2];
     double far = (-kTouching - height) / towards[2];
     clip(column, towards[0], field_.columns() - 1.0, near, far);

@@ -15,9 +15,9 @@ struct TiltedView {
   std::uint32_t margin = 0;  ///< around what is seen
 };
 
-/// Draws a map, which lies on the surface of a terrain, as it is seen aslant. Where the terrain ends
-/// it is cut down to the height of its lowest place. What is not hit is transparent; a pixel is the
-/// mean of nine samples. Throws Failure (kDegenerateInput) if the terrain has but one pixel.
+/// Draws a map, which lies on the surface of a terrain, as it is seen aslant. Where the terrain
+/// ends it is cut down to the height of its lowest place. What is not hit is transparent; a pixel
+/// is the mean of nine samples. Throws Failure (kDegenerateInput) if the terrain has but one pixel.
 Picture draw_tilted(const Picture& map, const HeightField& field, const TiltedView& view);
 
 }  // namespace spillway::picture

@@ -88,7 +88,7 @@ void ReliefColours::take_rgb(ReliefSamples& samples) {
   samples.collect_numbers([&](std::uint32_t column, std::uint32_t row, const auto& numbers) {
     ByteColour colour{};
     for (std::size_t k = 0; k < colour.size(); ++k) {
-      colour[k] = static_cast<std::uint8_t>(std::min(numbers[k] / most, 1.0F) * 255 + 0.5F);
+      colour[k] = static_cast<std::uint8_t>(std::lround(std::min(numbers[k] / most, 1.0F) * 255));
     }
     colours_->add(column, row, colour);
   });

@@ -19,8 +19,8 @@ namespace spillway::stream {
 /// pixels, of the nodes of a page.
 class ReliefSamples {
  public:
-  /// Samples may take `memory` bytes while triangles come by `threads` threads. `outline` is told of
-  /// triangles as DemSinkOptions has it; or null. `scratch` must outlive it.
+  /// Samples may take `memory` bytes while triangles come by `threads` threads. `outline` is told
+  /// of triangles as DemSinkOptions has it; or null. `scratch` must outlive it.
   ReliefSamples(const SceneMesh& mesh, PictureColour colour, std::uint64_t memory, unsigned threads,
                 ScratchFolder& scratch, std::function<void(const Triangle&)> outline = nullptr);
 

@@ -79,7 +79,7 @@ std::uint64_t count_triangles(const HeightPixels& heights) {
   return 2 * cells;
 }
 
-std::uint8_t byte_of(float share) { return static_cast<std::uint8_t>(share * 255 + 0.5F); }
+std::uint8_t byte_of(float share) { return static_cast<std::uint8_t>(std::lround(share * 255)); }
 
 std::uint32_t bits_of(const Colour& colour) {
   std::uint32_t bits = 0;

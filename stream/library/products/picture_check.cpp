@@ -16,7 +16,8 @@
 namespace spillway::stream {
 namespace {
 
-constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
+constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+constexpr std::uint64_t kLeastMemory = 64 * kMebibyte;
 /// The part of the memory that is there when the mesh has gone through.
 constexpr std::uint64_t kPictureShare = 2;
 
@@ -67,10 +68,12 @@ void check_picture_memory(const std::string& what, std::uint64_t needed, std::ui
                         {.enough = kLeastMemory, .remedy = Remedy::kMemory});
   }
   if (needed <= limit / kPictureShare) return;
+  // As limits are told: in whole MiB.
+  const std::uint64_t enough = (kPictureShare * needed + kMebibyte - 1) / kMebibyte * kMebibyte;
   throw TooSmallLimit(fmt::format("{} may need {} of memory, half of the limit: make a smaller "
                                   "one, or raise the limit",
                                   what, memory_size_text(needed)),
-                      {.enough = kPictureShare * needed, .remedy = Remedy::kMemory});
+                      {.enough = enough, .remedy = Remedy::kMemory});
 }
 
 }  // namespace spillway::stream

@@ -96,7 +96,8 @@ TEST(RenderPage, HoldsTheHeightsOfTheTerrain) {
   int without = 0;
   for (int i = 0; i < page.columns * page.rows; ++i) {
     const double x = (i % page.columns + 0.5) * side;
-    const double y = 20 - (i / page.columns + 0.5) * side;
+    const int row = i / page.columns;
+    const double y = 20 - (row + 0.5) * side;
     const bool in_hole = std::abs(x - 20) < 6 && std::abs(y - 10) < 6;
     const bool near_edge =
         std::abs(std::abs(x - 20) - 6) < 1.5 || std::abs(std::abs(y - 10) - 6) < 1.5;
@@ -185,6 +186,16 @@ TEST(RenderPage, ThreadsTilesMemoryAndWaysThroughMeshesGiveTheSameBytes) {
   }
 }
 
+TEST(RenderPage, ThatMayNotGrowIsAnErrorAndLeavesNothing) {
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 20000 -o in.las");
+  const auto before = work.names();
+  const Result result = work.run("ulimit -f 20; spillway render -q in.las -o view.html");
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("view.html"));
+  EXPECT_EQ(work.names(), before);
+}
+
 struct Refused {
   const char* name;
   const char* arguments;
@@ -218,7 +229,7 @@ constexpr std::array kRefused = {
     Refused{"TooFewTriangles", "points.txt -o a.html --triangles 10", 2, "--triangles"},
     Refused{"TooManyTriangles", "points.txt -o a.html --triangles 10000001", 2, "--triangles"},
     Refused{"MoreThanTheMemory", "points.txt -o a.html --triangles 10000000 --memory 100M", 2,
-            "--memory 152M is enough"},
+            "--memory 153M is enough"},
     Refused{"RampThatIsNone", "points.txt -o a.html --ramp rainbow", 2, "--ramp"},
     Refused{"RampOfTetrahedra", "points.txt --dim 3 -o a.png --ramp grey", 2,
             "colours are chosen of terrains"},

@@ -342,7 +342,7 @@ constexpr std::array kRefused = {
     Refused{"ZoomBesideThePoints", "points.txt -o view.png --zoom 7,7,8,8", 1, "beside"},
     Refused{"TooSmall", "points.txt -o view.png --size 5", 2, "--size"},
     Refused{"TooLargeForTheMemory", "points.txt -o view.png --size 9000 --memory 512M", 2,
-            "--memory 2471M is enough"},
+            "--memory 2472M is enough"},
     Refused{"TooLittleMemory", "points.txt -o view.png --memory 32M", 2, "--memory"},
     Refused{"NegativeExaggeration", "points.txt -o view.png --exaggerate=-1", 2, "--exaggerate"},
     Refused{"SliceOfATerrain", "points.txt -o view.png --slice z=1", 2, "a slice is of tetrahedra"},

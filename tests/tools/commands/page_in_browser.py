@@ -171,6 +171,13 @@ class Page(unittest.TestCase):
         by_height = self.shown("classes.html", **VIEW, ramp="grey")
         self.assertEqual(by_height.rows[150][150], by_height.rows[150][250])
 
+    def test_a_browser_without_webgl_is_told_so(self):
+        options = ["--headless", "--no-sandbox", "--disable-3d-apis", "--dump-dom"]
+        options += [f"--user-data-dir={self.folder / 'other-profile'}"]
+        address = (self.folder / "hill.html").as_uri()
+        shown = subprocess.run([BROWSER, *options, address], check=True, timeout=120, capture_output=True, text=True)
+        self.assertIn('<div id="failure" class="panel">This browser has no WebGL 2', shown.stdout)
+
     def test_keys_wheel_pointer_and_sliders_do_what_the_address_does(self):
         script = """
           const canvas = document.getElementById("view");
