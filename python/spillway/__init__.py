@@ -25,7 +25,9 @@ from ._reports import (
     PointsInfo,
     RasterReport,
     RunReport,
+    VolumeReport,
 )
+from ._volumes import volume
 from .errors import Error, Warning
 
 __all__ = [
@@ -57,6 +59,7 @@ __all__ = [
     "read_points",
     "render",
     "triangulate",
+    "volume",
 ]
 __version__: str = _spillway.version
 

@@ -145,6 +145,30 @@ class HeightReport(RunReport):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
+class VolumeReport(RunReport):
+    """Volumes and areas of the plane where the first surface lies above the second, or the level
+    (cut), and where below (fill); the area that both cover, that of each, 0 for a level; and the run
+    that triangulated the first surface."""
+
+    cut: float
+    fill: float
+    cut_area: float
+    fill_area: float
+    area: float
+    first_area: float
+    second_area: float
+    spilled_triangle_bytes: int
+
+    @property
+    def net(self) -> float:
+        """What is left over of the cut, or, below 0, is missing for the fill."""
+        return self.cut - self.fill
+
+    def _summary(self) -> str:
+        return f"cut {self.cut:.6g}, fill {self.fill:.6g}; {_counts(self)}"
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
     """How many lines there are, or polygons, of how many points, how many lines were left out for
     their length, the least and the greatest height of the terrain, and the run that made them. Of

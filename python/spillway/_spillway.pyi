@@ -134,6 +134,11 @@ class DemOptions:
     compress: str
     cog: bool
 
+class VolumeOptions:
+    max_edge: float | None
+    z_factor: float | None
+    foreign_crs: bool
+
 class HeightOptions:
     replace_z: bool
     min_height: float | None
@@ -215,6 +220,10 @@ def heights(
 def heights_in_memory(
     run: Run, inputs: _Inputs, options: PointOptions, ground: MeshOrigin, how: HeightOptions
 ) -> tuple[_Figures, NDArray[np.float64]]: ...
+def volume_between(
+    run: Run, first: MeshOrigin, second: MeshOrigin, how: VolumeOptions
+) -> _Figures: ...
+def volume_above(run: Run, surface: MeshOrigin, level: float, how: VolumeOptions) -> _Figures: ...
 def contours(run: Run, origin: MeshOrigin, output: bytes, options: ContourOptions) -> _Figures: ...
 def picture(run: Run, origin: MeshOrigin, output: bytes, options: PictureOptions) -> _Figures: ...
 def convert_points(

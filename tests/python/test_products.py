@@ -68,9 +68,9 @@ class Dem(InFolder):
             ("align has no effect with tiles", {"tiles": 100, "align": True}),
             ("need {x} and {y}", {"tiles": 100}),
         ):
-            with self.assertRaisesRegex(spillway.InvalidArgumentError, message):
+            with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, message):
                 spillway.dem("hills.las", "c.tif", resolution=1, **options)
-        with self.assertRaisesRegex(spillway.InvalidArgumentError, "without an output"):
+        with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "without an output"):
             spillway.dem("hills.las", resolution=1, tiles=100)
 
     def test_an_array_has_the_pixels_of_the_file(self):
