@@ -34,9 +34,9 @@ struct ContourOptions {
   /// Instead of lines, polygons of what lies between neighbouring levels: not in DXF, and not with
   /// min_length. The edges of one band have to fit in memory, at some 200 bytes each.
   bool bands = false;
-  /// Above 0: a file for each square of this side that has lines, whose edges lie on multiples of it,
-  /// with the lines cut at them; in the path "{x}" and "{y}" stand for its south-western corner. Not
-  /// of bands.
+  /// Above 0: a file for each square of this side that has lines, whose edges lie on multiples of
+  /// it, with the lines cut at them; in the path "{x}" and "{y}" stand for its south-western
+  /// corner. Not of bands.
   double tile_side = 0;
 };
 

@@ -70,15 +70,17 @@ struct DemOptions {
   PixelType type = PixelType::kFloat32;  ///< bytes are for shades
   std::string compression = "deflate";   ///< or "zstd", "none"
   bool cloud_optimized = false;          ///< with overviews
-  /// Above 0: the raster is cut into a file for each square of this side, in units of x and y, whose
-  /// edges lie on multiples of it; in the path "{x}" and "{y}" stand for its south-western corner.
-  /// Pixels are aligned. Files have the pixels of the raster as they are, and there is none for a
-  /// square without data. Of points that are triangulated, most get their names during the run.
+  /// Above 0: the raster is cut into a file for each square of this side, in units of x and y,
+  /// whose edges lie on multiples of it; in the path "{x}" and "{y}" stand for its south-western
+  /// corner. Pixels are aligned. Files have the pixels of the raster as they are, and there is none
+  /// for a square without data. Of points that are triangulated, most get their names during the
+  /// run.
   double tile_side = 0;
-  /// Or a vector file of polygons, of one layer: for each there is a file of the pixels whose centres
-  /// lie in it, and fields of it stand in braces in the path, as in "dtm_{name}.tif".
+  /// Or a vector file of polygons, of one layer: for each there is a file of the pixels whose
+  /// centres lie in it, and fields of it stand in braces in the path, as in "dtm_{name}.tif".
   std::string tile_polygons{};
-  /// A VRT that puts tiles together; empty: the path without what is in braces, with .vrt at its end.
+  /// A VRT that puts tiles together; empty: the path without what is in braces, with .vrt at its
+  /// end.
   std::string vrt{};
 };
 
@@ -112,12 +114,13 @@ class SPILLWAY_API DemSink : public MeshSink {
   [[nodiscard]] virtual const DemReport& report() const = 0;
 };
 
-/// A GeoTIFF, or one for each tile, interpolated linearly within the triangles. It gets its name when
-/// it is complete: tiles that are so stay if the run fails later. A quarter of the context's memory is for pixels. Throws Error: kInvalidArgument for
-/// options that cannot be, kOutOfBudget for a memory limit below 64 MiB, kInputOutput; begin()
-/// throws kBadInput for `like`, kDegenerateInput for points without z or tetrahedra, kTooLarge for a
-/// raster that is large because of points far away, and kInvalidArgument for products of points of
-/// what is a mesh. If no product needs triangles, triangulate() makes none.
+/// A GeoTIFF, or one for each tile, interpolated linearly within the triangles. It gets its name
+/// when it is complete: tiles that are so stay if the run fails later. A quarter of the context's
+/// memory is for pixels. Throws Error: kInvalidArgument for options that cannot be, kOutOfBudget
+/// for a memory limit below 64 MiB, kInputOutput; begin() throws kBadInput for `like`,
+/// kDegenerateInput for points without z or tetrahedra, kTooLarge for a raster that is large
+/// because of points far away, and kInvalidArgument for products of points of what is a mesh. If no
+/// product needs triangles, triangulate() makes none.
 SPILLWAY_API std::unique_ptr<DemSink> create_dem(const std::string& path, const DemOptions& options,
                                                  const Context& context);
 

@@ -18,10 +18,10 @@ struct GridSquare {
   auto operator<=>(const GridSquare&) const = default;
 };
 
-/// Cuts a line where it crosses edges of squares of a side, and calls take(square, points) with each
-/// piece, in order along the line. Pieces share the points at which they are cut, which lie on the
-/// edge exactly and do not depend on the line's direction. Pieces of a closed line that meet at its
-/// ends are one.
+/// Cuts a line where it crosses edges of squares of a side, and calls take(square, points) with
+/// each piece, in order along the line. Pieces share the points at which they are cut, which lie on
+/// the edge exactly and do not depend on the line's direction. Pieces of a closed line that meet at
+/// its ends are one.
 void cut_at_squares(std::span<const Point<2>> line, double side,
                     const std::function<void(GridSquare, std::span<const Point<2>>)>& take);
 

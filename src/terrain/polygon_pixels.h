@@ -16,8 +16,8 @@ struct ColumnRun {
   std::uint32_t end = 0;
 };
 
-/// Which pixels of a raster lie in a polygon: those whose centre does, by the even-odd rule over all
-/// rings. A centre on an edge belongs to what lies east of it, or north of a level one; so of
+/// Which pixels of a raster lie in a polygon: those whose centre does, by the even-odd rule over
+/// all rings. A centre on an edge belongs to what lies east of it, or north of a level one; so of
 /// polygons that share their edges, each centre is in one.
 class PolygonPixels {
  public:

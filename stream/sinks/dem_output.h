@@ -41,7 +41,8 @@ struct SheetContent {
 /// the store a row ahead for the heights at their edges, and put back.
 class DemOutput {
  public:
-  /// All of them must outlive it. Pixels beside an outline get no data. It has so many tiles in work at a time.
+  /// All of them must outlive it. Pixels beside an outline get no data. It has so many tiles in
+  /// work at a time.
   DemOutput(const DemSinkOptions& options, const std::vector<DemProduct>& layers,
             const TileLayout& tiles, const PolygonPixels* outline, RasterStore& store,
             std::size_t slots);

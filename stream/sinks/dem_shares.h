@@ -7,7 +7,8 @@
 
 namespace spillway::stream {
 
-/// Gives away the points in pixels, then all that has been painted, tile by tile in ascending order.
+/// Gives away the points in pixels, then all that has been painted, tile by tile in ascending
+/// order.
 void give_share(Dem& dem, ShareSender& sender);
 
 /// Takes the points of other processes; returns what they have painted, tile by tile in ascending

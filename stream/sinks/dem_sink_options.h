@@ -42,8 +42,8 @@ struct DemSinkOptions {
   bool closes_tiles = false;
   /// Where the sheets lie that the raster is cut into, once its grid is known. Nothing: one sheet.
   std::function<std::vector<SheetPlace>(const PixelGrid& raster)> sheets{};
-  /// Told of a sheet of which no pixel changes any more, to be written while others are painted. One
-  /// at a time, by a thread that paints.
+  /// Told of a sheet of which no pixel changes any more, to be written while others are painted.
+  /// One at a time, by a thread that paints.
   std::function<void(std::size_t sheet)> sheet_is_final{};
   /// Told of every triangle that may be seen, once, corners in output coordinates and in canonical
   /// order; by many threads. Those in whose box no pixel has its centre are passed over.

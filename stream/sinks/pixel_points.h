@@ -29,8 +29,8 @@ struct PointInPixel {
 
 /// Sorts points by pixel and height, by an external merge sort (D. Knuth, "The Art of Computer
 /// Programming" 3, 5.4): what memory holds is sorted and becomes a run, and kMostRuns runs of one
-/// level are merged into one of the next. What comes out depends on the set of points alone. A pixel
-/// may have any number of points, and of the raster only pixels with points take anything.
+/// level are merged into one of the next. What comes out depends on the set of points alone. A
+/// pixel may have any number of points, and of the raster only pixels with points take anything.
 class PixelPoints {
  public:
   static constexpr std::uint64_t kTilePixels = std::uint64_t{256} * 256;

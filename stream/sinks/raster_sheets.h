@@ -13,8 +13,8 @@
 
 namespace spillway::stream {
 
-/// A raster that is cut into sheets, each of which becomes a file. With a ring, a sheet also has the
-/// pixels next to it, which it shares with its neighbours: so it is made without them.
+/// A raster that is cut into sheets, each of which becomes a file. With a ring, a sheet also has
+/// the pixels next to it, which it shares with its neighbours: so it is made without them.
 class RasterSheets {
  public:
   RasterSheets() = default;

@@ -116,8 +116,8 @@ class RasterStore {
   void take(std::uint64_t number, std::vector<float>& pixels,
             std::span<const std::vector<std::byte>> others = {});
 
-  /// Gives back a tile that take() has given, to be taken once more; it goes to the disk if there is
-  /// no room. While pixels are taken only. May be called by many threads.
+  /// Gives back a tile that take() has given, to be taken once more; it goes to the disk if there
+  /// is no room. While pixels are taken only. May be called by many threads.
   void put_back(std::uint64_t number, std::vector<float>& pixels);
 
   /// Takes a tile out of the store, for another one.

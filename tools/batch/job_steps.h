@@ -31,8 +31,8 @@ class JobPlanner {
   JobPlanner(const CommandLine& root, std::string folder, std::string scratch);
 
   /// The steps of a job, in order: rasters of points are made of the points, and so is a single
-  /// output besides; several are made of one triangulation. Throws UsageError that names the job for a kind of output or an option
-  /// that there is not.
+  /// output besides; several are made of one triangulation. Throws UsageError that names the job
+  /// for a kind of output or an option that there is not.
   [[nodiscard]] std::vector<JobStep> plan(const Job& job) const;
 
   /// Whether a subcommand knows an option by this long name, of which an output comes.

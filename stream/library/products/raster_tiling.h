@@ -36,8 +36,8 @@ class RasterTiling {
   [[nodiscard]] virtual std::string crs() const { return {}; }
 };
 
-/// The path of the VRT beside files of a pattern: without its parts in braces, and with one separator
-/// where there were several; "tiles.vrt" if nothing is left.
+/// The path of the VRT beside files of a pattern: without its parts in braces, and with one
+/// separator where there were several; "tiles.vrt" if nothing is left.
 std::string vrt_path_of(const std::string& pattern);
 
 /// The tiling that options ask for, of files of a pattern; null if there is one file. Throws

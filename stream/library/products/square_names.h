@@ -11,8 +11,8 @@ namespace spillway::stream {
 /// corner of each.
 class SquareNames {
  public:
-  /// Throws InvalidArgument if the name of the file `pattern` has not both of them once, or the side
-  /// is not above 0.
+  /// Throws InvalidArgument if the name of the file `pattern` has not both of them once, or the
+  /// side is not above 0.
   SquareNames(std::string pattern, double side);
 
   [[nodiscard]] double side() const { return side_; }

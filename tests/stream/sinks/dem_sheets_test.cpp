@@ -1,5 +1,5 @@
-// A raster that is cut into sheets: each pixel is as in the whole one, and sheets are handed on while
-// triangles come.
+// A raster that is cut into sheets: each pixel is as in the whole one, and sheets are handed on
+// while triangles come.
 
 #include <gtest/gtest.h>
 

@@ -278,7 +278,8 @@ TEST_F(RasterStoreTest, PutsTilesOnTheDiskThatAreClosedBeforeOthers) {
   EXPECT_EQ(*hand.tile(1000), 7);
 }
 
-/// A tile is taken as soon as it is closed, while other threads pack tiles and write them to the disk.
+/// A tile is taken as soon as it is closed, while other threads pack tiles and write them to the
+/// disk.
 TEST_F(RasterStoreTest, GivesTilesThatAreClosedWhileOthersArePainted) {
   constexpr std::uint64_t kTiles = 240;
   constexpr std::size_t kHalf = RasterStore::kTilePixels / 2;
