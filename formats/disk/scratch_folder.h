@@ -13,8 +13,8 @@
 namespace spillway::formats {
 
 /// A file for one run: appended to, then read. Its bytes are gone from the disk when it is
-/// destroyed. append() is called by one thread at a time; read() by any number, once nothing more
-/// is appended.
+/// destroyed. append() is called by one thread at a time; read() by any number, also meanwhile, of
+/// what has been appended.
 class ScratchFile {
  public:
   virtual ~ScratchFile() = default;

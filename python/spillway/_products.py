@@ -244,7 +244,7 @@ def dem(
         if type == "byte":
             refuse(of_files, ["nodata"], "on bytes, in which 0 is no data")
         put_all(how, of_files)
-        _put_tiles(how, tiles, vrt, align)
+        _put_tiles(how, tiles, vrt, align, bool(options.get("force_crs")))
         report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
         _warn_of_empty(report)
         _warn_of_other_files(report)
@@ -521,7 +521,7 @@ def _check_products(how: _spillway.DemOptions, surface: dict[str, Any], options:
 
 
 def _put_tiles(
-    how: _spillway.DemOptions, tiles: float | PathLike | None, vrt: PathLike | None, align: bool
+    how: _spillway.DemOptions, tiles: float | PathLike | None, vrt: PathLike | None, align: bool, force_crs: bool
 ) -> None:
     """Put what a raster is cut into."""
     if tiles is None:
@@ -531,6 +531,7 @@ def _put_tiles(
         how.vrt = as_path(vrt, "vrt")
     if isinstance(tiles, (str, bytes, os.PathLike)):
         how.tile_polygons = as_path(tiles, "tiles")
+        how.foreign_crs = force_crs
         return
     refuse({"align": align}, ["align"], "with tiles that are squares, which align pixels")
     put(how, "tiles", tiles, lambda target, side: setattr(target, "tile_side", side))

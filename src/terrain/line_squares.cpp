@@ -9,8 +9,11 @@
 namespace spillway::terrain {
 namespace {
 
+/// By the edges as they are computed.
 std::int64_t square_of(double coordinate, double side) {
-  return static_cast<std::int64_t>(std::floor(coordinate / side));
+  const auto number = static_cast<std::int64_t>(std::floor(coordinate / side));
+  if (static_cast<double>(number + 1) * side <= coordinate) return number + 1;
+  return static_cast<double>(number) * side > coordinate ? number - 1 : number;
 }
 
 /// A coordinate that is a multiple of the side but for rounding becomes that.

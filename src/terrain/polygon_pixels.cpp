@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 namespace spillway::terrain {
@@ -82,6 +83,13 @@ PolygonPixels::PolygonPixels(std::span<const std::vector<Point<2>>> rings,
     first_run_.push_back(
         static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin()));
   }
+}
+
+bool PolygonPixels::has(std::uint32_t row, std::uint32_t column) const {
+  if (row < window_.row_begin || row >= window_.row_end) return false;
+  const std::span<const ColumnRun> runs = this->row(row);
+  const auto next = std::ranges::upper_bound(runs, column, {}, &ColumnRun::begin);
+  return next != runs.begin() && column < std::prev(next)->end;
 }
 
 }  // namespace spillway::terrain

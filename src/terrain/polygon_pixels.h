@@ -31,6 +31,12 @@ class PolygonPixels {
     return std::span(runs_).subspan(first_run_[r], first_run_[r + 1] - first_run_[r]);
   }
 
+  [[nodiscard]] bool has(std::uint32_t row, std::uint32_t column) const;
+  /// What it takes.
+  [[nodiscard]] std::uint64_t bytes() const {
+    return runs_.size() * sizeof(ColumnRun) + first_run_.size() * sizeof(std::size_t);
+  }
+
  private:
   PixelWindow window_;
   std::vector<ColumnRun> runs_;

@@ -155,7 +155,8 @@ void Dem::begin(const PixelGrid& grid) {
   std::uint64_t in_work = 0;
   if (writes_early()) {
     closed = [this](std::uint64_t number) { note_closed(number); };
-    in_work = DemOutput::kLeastSlots * DemOutput::slot_bytes(options_, layers_);
+    in_work = DemOutput::kLeastSlots * DemOutput::slot_bytes(options_, layers_) +
+              options_.memory_of_files;
   }
   left_out_ = 0;
   points_in_pixels_ = pixels_with_points_ = filled_pixels_ = 0;
@@ -492,11 +493,11 @@ void Dem::restore(StateReader& state) {
 }
 
 SheetContent Dem::write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-                        const OtherTiles& others, std::size_t sheet) {
+                        const OtherTiles& others, std::size_t sheet, bool while_painting) {
   SheetState& state = states_[sheet];
   state.written = true;
   // All painted, the pixels have twice their memory: the triangulation, which had more, is done.
-  const std::uint64_t slots = writes_early()
+  const std::uint64_t slots = while_painting
                                   ? DemOutput::kLeastSlots
                                   : 2 * options_.memory / DemOutput::slot_bytes(options_, layers_);
   DemOutput output(options_, layers_, sheets_[sheet], sheets_.outline(sheet), *store_,

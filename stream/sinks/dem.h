@@ -62,9 +62,11 @@ class Dem {
 
   /// Writes all tiles of a sheet, row by row, and forgets them. `progress` is told how many of its
   /// pixels are written: a pixel with all its bands counts once. Of other Dems of the same grid,
-  /// which have painted other triangles, `others` gives what they have.
+  /// which have painted other triangles, `others` gives what they have. Less memory is taken
+  /// while others are painted.
   SheetContent write(Raster& raster, const std::function<void(std::uint64_t pixels)>& progress,
-                     const OtherTiles& others = nullptr, std::size_t sheet = 0);
+                     const OtherTiles& others = nullptr, std::size_t sheet = 0,
+                     bool while_painting = false);
   /// Whether write() has been called for it, here or before the Dem was saved.
   [[nodiscard]] bool is_written(std::size_t sheet) const { return states_[sheet].written; }
   /// What a sheet has that is written.

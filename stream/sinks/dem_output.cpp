@@ -231,7 +231,7 @@ void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
       add_ring(tile, slot.framed);
       derive(tile, slot);
     }
-    if (options_.fill_voids) fill_voids(size, slot);
+    if (options_.fill_voids) fill_voids(tile, slot);
   }
   for (std::size_t b = 0; b < options_.products.size(); ++b) {
     finish_band(options_.products[b], size, band_of(slot.bands, b));
@@ -278,7 +278,10 @@ void DemOutput::cut_out(std::uint64_t tile, std::vector<float>& bands) const {
 }
 
 /// Pixels without points get the height of the triangle at their centre.
-void DemOutput::fill_voids(TileLayout::Size size, Slot& slot) const {
+void DemOutput::fill_voids(std::uint64_t tile, Slot& slot) const {
+  const TileLayout::Size size = tiles_.size(tile);
+  const std::uint32_t top = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
+  const std::uint32_t left = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
   const std::span<const float> heights = band_of(slot.layers, heights_);
   slot.filled = 0;
   bool is_first = true;
@@ -290,7 +293,9 @@ void DemOutput::fill_voids(TileLayout::Size size, Slot& slot) const {
       for (std::size_t i = first; i < first + size.columns; ++i) {
         if (!std::isnan(band[i]) || std::isnan(heights[i])) continue;
         band[i] = heights[i];
-        if (is_first) ++slot.filled;
+        const bool is_seen = outline_ == nullptr ||
+                             outline_->has(top + row, left + static_cast<std::uint32_t>(i - first));
+        if (is_first && is_seen) ++slot.filled;
       }
     }
     is_first = false;

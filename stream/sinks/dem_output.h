@@ -79,7 +79,7 @@ class DemOutput {
   void make_bands(std::uint64_t tile, Slot& slot) const;
   void add_ring(std::uint64_t tile, std::span<float> framed) const;
   void derive(std::uint64_t tile, Slot& slot) const;
-  void fill_voids(TileLayout::Size size, Slot& slot) const;
+  void fill_voids(std::uint64_t tile, Slot& slot) const;
   [[nodiscard]] double value_of(DemProduct product, const Neighbourhood& z, const Point<2>& sides,
                                 const Gradient& gradient) const;
   void cut_out(std::uint64_t tile, std::vector<float>& bands) const;

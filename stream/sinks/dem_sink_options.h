@@ -35,8 +35,9 @@ struct DemSinkOptions {
   bool fill_voids = false;            ///< of products of points, by heights of triangles
   std::optional<double> max_edge{};   ///< leave out triangles with a longer edge, in output units
   float nodata = -9999;
-  std::uint64_t memory = 0;  ///< for pixels; above it they go to the disk
-  unsigned threads = 1;      ///< of which each may have a hand on the pixels
+  std::uint64_t memory = 0;           ///< for pixels; above it they go to the disk
+  std::uint64_t memory_of_files = 0;  ///< of it, what files take that are written early
+  unsigned threads = 1;               ///< of which each may have a hand on the pixels
   /// A tile of pixels is closed as soon as each has been painted by the triangle that owns it. For
   /// triangles that do not overlap, all of which are painted here.
   bool closes_tiles = false;

@@ -22,7 +22,8 @@ class LinesBySquare {
   LinesBySquare(double side, std::uint64_t memory, ScratchFolder& scratch)
       : side_(side), memory_(memory), scratch_(scratch) {}
 
-  /// Cuts a line at the edges of squares and keeps the pieces.
+  /// Cuts a line at the edges of squares and keeps the pieces. Throws InvalidArgument for too many
+  /// squares.
   void add(std::span<const Point<2>> points, std::int64_t level);
 
   /// The squares that have some, from the south-west, row by row.
@@ -44,6 +45,7 @@ class LinesBySquare {
     Packer latest;
   };
 
+  void check(std::span<const Point<2>> points) const;
   void spill();
 
   const double side_;

@@ -63,7 +63,9 @@ PixelGrid RasterSheets::grid_of(std::size_t sheet) const {
 }
 
 std::uint64_t RasterSheets::bytes() const {
-  std::uint64_t bytes = sheets_.size() * sizeof(TileLayout);
+  constexpr std::uint64_t kNameBytes = 256;
+  std::uint64_t bytes = sheets_.size() * (sizeof(TileLayout) + kNameBytes);
+  for (const auto& outline : outlines_) bytes += outline == nullptr ? 0 : outline->bytes();
   for (const std::vector<Columns>& band : bands_) bytes += band.size() * sizeof(Columns);
   return bytes;
 }

@@ -55,14 +55,17 @@ class RasterSheets {
     }
   }
 
-  /// Calls take(sheet, row, column) for each sheet that has a pixel in it, with its place there.
+  /// Calls take(sheet, row, column) for each sheet that has a pixel in it and in its outline, with
+  /// the place there.
   template <typename Take>
   void visit_pixel(std::uint32_t row, std::uint32_t column, const Take& take) const {
     visit(row + margin_, column + margin_, column + margin_ + 1,
           [&](std::size_t sheet, std::uint32_t, std::uint32_t) {
             const PixelWindow& window = sheets_[sheet].window;
-            const bool is_inside = row >= window.row_begin && row < window.row_end &&
-                                   column >= window.column_begin && column < window.column_end;
+            const bool is_inside =
+                row >= window.row_begin && row < window.row_end && column >= window.column_begin &&
+                column < window.column_end &&
+                (outlines_[sheet] == nullptr || outlines_[sheet]->has(row, column));
             if (is_inside) take(sheet, row - window.row_begin, column - window.column_begin);
           });
   }

@@ -321,7 +321,11 @@ void RasterStore::take_as_it_is(std::uint64_t number, std::vector<float>& pixels
       packed = std::move(tile.packed);
       packed_bytes_ -= packed.size();
       spilled = std::move(tile.spilled);
-      tiles_.erase(number);
+      tile.spilled.clear();
+      tile.packed.clear();
+      tile.pixels.clear();
+      // A closed one stays so: a thread that comes late to one of its pixels must find it.
+      if (!tile.closed) tiles_.erase(number);
     }
   }
   if (pixels.empty()) pixels.assign(tile_floats(), kNothing);
@@ -373,7 +377,9 @@ std::vector<std::uint64_t> RasterStore::tiles() const {
   std::vector<std::uint64_t> numbers;
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [number, tile] : tiles_) numbers.push_back(number);
+    for (const auto& [number, tile] : tiles_) {
+      if (!is_taken(tile)) numbers.push_back(number);
+    }
   }
   std::sort(numbers.begin(), numbers.end());
   return numbers;
@@ -404,9 +410,11 @@ void RasterStore::add_pixels(std::span<const std::byte> stored, const FileSpot& 
 void RasterStore::save(StateWriter& state) {
   state.section("raster");
   state.file(file_);
-  std::uint64_t count = tiles_.size();
+  auto count = static_cast<std::uint64_t>(
+      std::ranges::count_if(tiles_, [](const auto& one) { return !is_taken(one.second); }));
   state(closed_tiles_, count);
   for (const auto& [number, tile] : tiles_) {
+    if (is_taken(tile)) continue;
     SavedTile saved{number, tile.decided, tile.closed, tile.packed, tile.spilled};
     if (!tile.pixels.empty()) saved.packed = encode(tile.pixels, runs_of(tile.pixels));
     state(saved);

@@ -166,6 +166,11 @@ class RasterStore {
 
   class Move;
 
+  static bool is_taken(const Tile& tile) {
+    return tile.closed && tile.moving == 0 && tile.pixels.empty() && tile.packed.empty() &&
+           tile.spilled.empty();
+  }
+
   float* hold(std::uint64_t number);
   void let_go(std::uint64_t number, std::uint32_t decided);
   void take_back(SavedTile saved, const FileSpot& where);

@@ -92,6 +92,10 @@ TEST(LineSquares, OfAClosedLineMeetAtItsEndsInOne) {
 TEST(LineSquares, HoldTheirSouthernAndWesternEdges) {
   EXPECT_EQ(cut({{10, 2}, {10, 8}}, 10), (Pieces{{{0, 1}, {{10, 2}, {10, 8}}}}));
   EXPECT_EQ(cut({{2, -10}, {8, -10}}, 10), (Pieces{{{-1, 0}, {{2, -10}, {8, -10}}}}));
+  for (int i = 1; i < 2000; ++i) {  // multiples that division rounds down
+    const double edge = i * 0.1;
+    EXPECT_EQ(cut({{edge, 0.01}, {edge, 0.02}}, 0.1)[0].first, (GridSquare{0, i})) << i;
+  }
   EXPECT_TRUE(cut({{3, 3}}, 10).empty());
   EXPECT_TRUE(cut({{3, 3}, {3, 3}}, 10).empty());
 }

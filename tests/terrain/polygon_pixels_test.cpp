@@ -50,6 +50,9 @@ std::vector<int> pixels_of(const std::vector<Ring>& rings) {
       for (std::uint32_t c = begin; c < end; ++c) ++pixels[row * kGrid.columns + c];
       last = end;
     }
+    for (std::uint32_t c = 0; c < kGrid.columns; ++c) {
+      EXPECT_EQ(polygon.has(row, c), pixels[row * kGrid.columns + c] == 1);
+    }
   }
   return pixels;
 }

@@ -136,6 +136,7 @@ void set_tiles(const DemCommandOptions& options, DemOptions& dem) {
   dem.vrt = options.vrt;
   if (!parse_number(options.tiles)) {
     dem.tile_polygons = options.tiles;
+    dem.foreign_crs = options.input.force_crs;
     return;
   }
   refuse_given(*options.app, {"--align"}, "with tiles that are squares, which align pixels");
@@ -190,7 +191,11 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   app.add_option("--tiles", options.tiles,
                  "Cut the raster into squares of this side, or by the polygons of a file")
       .value_name("SIDE|FILE")
-      .group(group);
+      .group(group)
+      // The coordinate system of polygons is compared with that of a mesh, too.
+      .each([&options](const std::string& text) {
+        if (!parse_number(text)) options.own_options.emplace_back("--force-crs");
+      });
   app.add_option("--vrt", options.vrt, "Of tiles, what puts them together [like -o]")
       .value_name("FILE")
       .group(group);

@@ -12,8 +12,9 @@ namespace spillway::command {
 
 void refuse_pattern(const std::string& output) {
   const std::string name = std::filesystem::path(output).filename();
-  if (name.find("{x}") == std::string::npos) return;
-  throw UsageError(fmt::format("{}: {{x}} in a name is for tiles; give --tiles, too", output));
+  const std::size_t brace = name.find('{');
+  if (brace == std::string::npos || name.find('}', brace) == std::string::npos) return;
+  throw UsageError(fmt::format("{}: braces in a name are for tiles; give --tiles, too", output));
 }
 
 void warn_of_other_tiles(const std::vector<std::string>& files, const std::string& output,

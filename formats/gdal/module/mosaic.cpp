@@ -27,7 +27,9 @@ std::string mosaic_text(const std::vector<std::string>& rasters, const PixelGrid
   };
   CPLStringList arguments;
   for (const std::string& one :
-       {std::string("-te"), fmt::format("{:.17g}", place.west),
+       {std::string("-resolution"), std::string("user"), std::string("-tr"),
+        fmt::format("{:.17g}", place.resolution), fmt::format("{:.17g}", place.resolution),
+        std::string("-te"), fmt::format("{:.17g}", place.west),
         fmt::format("{:.17g}", place.north - place.rows * place.resolution),
         fmt::format("{:.17g}", place.west + place.columns * place.resolution),
         fmt::format("{:.17g}", place.north)}) {

@@ -16,7 +16,8 @@ namespace {
 
 std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
   std::vector<Point<2>> points;
-  for (int i = 0; i + 1 < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
+  for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
+  if (points.size() > 1 && points.front() == points.back()) points.pop_back();
   return points;
 }
 

@@ -31,6 +31,8 @@ namespace {
 constexpr std::uint64_t kLeastMemory = std::uint64_t{64} << 20;
 /// The part of the memory that is for pixels.
 constexpr std::uint64_t kPixelShare = 4;
+/// The part of that which is for overviews of tiles that are written early.
+constexpr std::uint64_t kShareOfOverviews = 4;
 
 /// A raster is large because of points far away if it has many pixels, and thousands for each
 /// vertex; it may be if it has hundreds.
@@ -192,9 +194,11 @@ DemFile::DemFile(const std::string& path, const DemOptions& options, const Conte
   if (tiling_) {
     dem_options_.grid.align = options_.align || options_.tile_side != 0;
     dem_options_.sheets = [this](const PixelGrid& raster) { return lay_tiles(raster); };
+    dem_options_.memory_of_files =
+        options_.cloud_optimized ? dem_options_.memory / kShareOfOverviews : 0;
     dem_options_.sheet_is_final = [this](std::size_t sheet) {
       write_sheet(
-          sheet, [](std::uint64_t) {}, nullptr);
+          sheet, [](std::uint64_t) {}, nullptr, true);
     };
     if (options_.vrt.empty()) options_.vrt = vrt_path_of(path_);
   }
@@ -295,6 +299,12 @@ void DemFile::identify(RunIdentity& identity) const {
   add("filled voids", options_.fill_voids);
   add("side of tiles", options_.tile_side);
   if (!options_.tile_polygons.empty()) identity.add_file("polygons", options_.tile_polygons);
+  if (tiling_) {  // some may be written
+    add("nodata", dem_options_.nodata);
+    add("bytes", options_.type == PixelType::kByte);
+    add("compression", options_.compression);
+    add("cloud optimized", options_.cloud_optimized);
+  }
   add("factor of z", options_.z_factor ? fmt::format("{}", *options_.z_factor) : "by units");
 }
 
@@ -451,15 +461,28 @@ std::vector<std::string> DemFile::written_files() const {
 }
 
 /// A tile without data has no file.
-void DemFile::write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others) {
-  constexpr std::uint64_t kShareForOverviews = 4;
+void DemFile::write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others,
+                          bool while_painting) {
   RasterOptions raster =
       file_options(tiling_ ? tiles_[sheet].path : path_, options_, dem_->raster_options(sheet));
   raster.grid.crs = crs_;
-  if (tiling_) raster.memory /= kShareForOverviews;  // pixels of other tiles are there
+  if (while_painting) raster.memory = dem_options_.memory_of_files;
   RasterFile file(std::move(raster));
-  const SheetContent content = dem_->write(file.raster(), progress, others, sheet);
+  const SheetContent content = dem_->write(file.raster(), progress, others, sheet, while_painting);
   if (!tiling_ || !content.is_empty) file.finish();
+}
+
+/// Returns how many there are. Those that were written before a run was resumed may be gone.
+std::uint64_t DemFile::check_early_files() const {
+  const std::vector<std::string> files = written_files();
+  for (const std::string& file : files) {
+    if (disk().exists(file)) continue;
+    throw Failure(fmt::format("{} is gone, which was written before the run was resumed: begin "
+                              "again, without what is kept of the run",
+                              file),
+                  ErrorCode::kInputOutput, {.file = file});
+  }
+  return files.size();
 }
 
 void DemFile::write_vrt(const std::vector<std::string>& files) {
@@ -479,8 +502,11 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
   const PixelGrid& grid = dem.grid();
   const OtherTiles of_others = take_shares(others, dem);
   watch.begin("write", "pixels");
-  const std::uint64_t pixels = std::uint64_t{grid.columns} * grid.rows;
-  const std::uint64_t early = written_files().size();
+  std::uint64_t pixels = 0;
+  for (std::size_t s = 0; s < dem.sheets().size(); ++s) {
+    pixels += std::uint64_t{dem.sheets()[s].rows} * dem.sheets()[s].columns;
+  }
+  const std::uint64_t early = check_early_files();
   std::uint64_t before = 0;
   const Progress progress = [&](std::uint64_t done) {
     watch.tell(before + done, static_cast<double>(before + done) / static_cast<double>(pixels));
@@ -495,7 +521,7 @@ void DemFile::finalize(RunWatch& watch, Report& report, OtherShares& others) {
       return;
     }
     for (std::size_t s = 0; s < dem.sheets().size(); ++s) {
-      if (!dem.is_written(s)) write_sheet(s, progress, of_others);
+      if (!dem.is_written(s)) write_sheet(s, progress, of_others, false);
       before += std::uint64_t{dem.sheets()[s].rows} * dem.sheets()[s].columns;
     }
   });

@@ -63,7 +63,9 @@ class DemFile final : public OwnSink<DemSink> {
   void tell_of_degrees();
 
   using Progress = std::function<void(std::uint64_t pixels)>;
-  void write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others);
+  void write_sheet(std::size_t sheet, const Progress& progress, const OtherTiles& others,
+                   bool while_painting);
+  [[nodiscard]] std::uint64_t check_early_files() const;
   [[nodiscard]] std::vector<std::string> written_files() const;
   [[nodiscard]] std::vector<SheetPlace> lay_tiles(const PixelGrid& raster);
   void write_vrt(const std::vector<std::string>& files);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
@@ -67,6 +68,7 @@ PolygonTiling::PolygonTiling(const std::string& pattern, const std::string& poly
     }
     paths_.push_back(path.parent_path() / name);
   }
+  for (PolygonFeature& polygon : layer_.polygons) polygon.fields.clear();
 }
 
 std::vector<RasterTile> PolygonTiling::tiles(const PixelGrid& raster) const {
@@ -76,6 +78,13 @@ std::vector<RasterTile> PolygonTiling::tiles(const PixelGrid& raster) const {
     if (outline->window().empty()) continue;
     const PixelWindow window = outline->window();
     tiles.push_back({window, paths_[p], std::move(outline)});
+  }
+  if (tiles.empty()) {
+    throw InvalidArgument(fmt::format(
+        "none of the polygons has a pixel of the raster, which reaches from {:.15g}, {:.15g} to "
+        "{:.15g}, {:.15g}",
+        raster.west, raster.north - raster.rows * raster.resolution,
+        raster.west + raster.columns * raster.resolution, raster.north));
   }
   return tiles;
 }

@@ -1,5 +1,7 @@
 #include "stream/library/products/raster_tiling.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <regex>
@@ -28,6 +30,12 @@ std::string vrt_path_of(const std::string& pattern) {
 std::unique_ptr<RasterTiling> make_tiling(const std::string& pattern, const DemOptions& options) {
   if (options.tile_side != 0 && !options.tile_polygons.empty()) {
     throw InvalidArgument("tiles are squares or polygons, not both");
+  }
+  if (!options.vrt.empty() && std::filesystem::path(options.vrt).extension() != ".vrt") {
+    throw InvalidArgument(fmt::format("{}: what puts tiles together is a VRT: give it a name that "
+                                      "ends in .vrt",
+                                      options.vrt),
+                          {.file = options.vrt});
   }
   if (options.tile_side != 0) return std::make_unique<SquareTiling>(pattern, options.tile_side);
   if (!options.tile_polygons.empty()) {

@@ -49,7 +49,7 @@ SquareNames::SquareNames(std::string pattern, double side)
 
 std::string SquareNames::path(GridSquare square) const {
   const auto corner = [this](std::int64_t number) {
-    return fmt::format("{:.12g}", static_cast<double>(number) * side_ + 0.0);
+    return fmt::format("{:.15g}", static_cast<double>(number) * side_ + 0.0);
   };
   const fs::path path(pattern_);
   return path.parent_path() /
@@ -59,7 +59,7 @@ std::string SquareNames::path(GridSquare square) const {
 std::vector<std::string> SquareNames::others_than(std::vector<std::string> paths) const {
   constexpr const char* kNumber = "-?[0-9]+(\\.[0-9]+)?(e[+-]?[0-9]+)?";
   const fs::path path(pattern_);
-  const std::regex special(R"([-[\]{}()*+?.,\^$|#\s])");
+  const std::regex special(R"([-[\]{}()*+?.,\\^$|#\s])");
   const auto literally = [&](std::string_view text) {
     return std::regex_replace(std::string(text), special, R"(\$&)");
   };

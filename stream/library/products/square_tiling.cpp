@@ -44,7 +44,8 @@ struct SquareTiling::Steps {
 SquareTiling::Steps SquareTiling::steps_of(const PixelGrid& raster) const {
   const double pixel = raster.resolution;
   const double square = std::round(names_.side() / pixel);
-  if (square < 1 || std::abs(square * pixel - names_.side()) > kRoundingShare * names_.side()) {
+  if (square < 1 || square > kMostSteps ||
+      std::abs(square * pixel - names_.side()) > kRoundingShare * names_.side()) {
     throw InvalidArgument(
         fmt::format("tiles of side {} are no whole number of pixels of {}: choose another side",
                     names_.side(), pixel));

@@ -327,13 +327,41 @@ TEST_F(RasterStoreTest, GivesTilesThatAreClosedWhileOthersArePainted) {
         }
       }
     };
+    // Has pixels that others decide, and may come when the tile is taken.
+    const auto come_late = [&] {
+      RasterStore::Hand hand(store);
+      for (std::uint64_t t = 0; t < kTiles; ++t) {
+        float* const pixels = hand.tile(t);
+        if (pixels != nullptr) set_pixel(pixels[7], static_cast<float>(t * 3));
+      }
+    };
     std::jthread first(paint, 0);
     std::jthread second(paint, 1);
+    std::jthread third(come_late);
     std::jthread taker(take);
     taker.join();
+    third.join();
     EXPECT_EQ(taken, kTiles);
     EXPECT_TRUE(store.tiles().empty());
   }
+}
+
+TEST_F(RasterStoreTest, LeavesATileClosedThatIsTaken) {
+  RasterStore store({PixelRule::kEqual}, 30 * kTileBytes, *scratch_, all_pixels);
+  RasterStore::Hand hand(store);
+  fill_tile(hand, 5);
+  hand.release();
+  std::vector<float> pixels;
+  store.take(5, pixels);
+  EXPECT_EQ(hand.tile(5), nullptr);
+  EXPECT_TRUE(store.tiles().empty());
+  store.put_back(5, pixels);
+  EXPECT_EQ(hand.tile(5), nullptr);
+  EXPECT_EQ(store.tiles(), std::vector<std::uint64_t>{5});
+  store.take(5, pixels);
+  EXPECT_FALSE(std::isnan(pixels[0]));
+  EXPECT_EQ(hand.tile(5), nullptr);
+  EXPECT_TRUE(store.tiles().empty());
 }
 
 /// Another process goes on from what was saved in the midst, whatever was on the disk then, and

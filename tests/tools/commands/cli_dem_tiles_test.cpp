@@ -226,6 +226,57 @@ TEST_F(DemTiles, TellWhatIsWrong) {
               HasSubstr("polygons 1 and 2 would both be d_a.tif"));
   EXPECT_THAT(refused("-o 'd_{id}.tif' --tiles twice.gpkg"), HasSubstr("no field \"id\""));
   EXPECT_THAT(refused("-o d.tif --tiles twice.gpkg"), HasSubstr("need a field"));
+  work_.write("far.csv", "name,WKT\na,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
+  work_.succeed("ogr2ogr -q far.gpkg far.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  EXPECT_THAT(refused("-o 'd_{name}.tif' --tiles far.gpkg"),
+              HasSubstr("none of the polygons has a pixel of the raster"));
+  EXPECT_THAT(refused("-o 'd_{name}.tif'"), HasSubstr("give --tiles"));
+  EXPECT_THAT(refused("-o 'd_{x}_{y}.tif' --tiles 50 --vrt in.las"), HasSubstr("ends in .vrt"));
+}
+
+TEST_F(DemTiles, OfPolygonsHaveTheirCoordinateSystemUnlessItIsForced) {
+  work_.write("sheet.csv",
+              "name,WKT\na,\"POLYGON((500160 4100160,500210 4100150,500205 4100240))\"\n");
+  work_.succeed("ogr2ogr -q -a_srs EPSG:32633 sheet.gpkg sheet.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  const std::string arguments = "-o 'd_{name}.tif' --tiles sheet.gpkg --crs EPSG:32632";
+  const Result refused = work_.run("spillway dem in.las --resolution 0.25 " + arguments);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--force-crs"));
+  EXPECT_EQ(make(arguments + " --force-crs")["files"], 1);
+}
+
+/// A file that is written early has what the first run was told.
+TEST_F(DemTiles, AreNotGoneOnWithByARunOfOtherOptions) {
+  work_.succeed("spillway generate terrain -n 2000000 --seed 3 -q -o large.las; mkdir b");
+  const std::string how =
+      " large.las --resolution 0.5 --tiles 50 -q --resume folder "
+      "--checkpoint-every 0 --tile-points 50000 -o ";
+  std::istringstream words("dem" + how + "b/d_{x}_{y}.tif");
+  const pid_t process = work_.start({std::istream_iterator<std::string>(words), {}});
+  for (int i = 0; i < 2000 && work_.run("ls b/*.tif").exit_code != 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  kill(process, SIGKILL);
+  (void)wait_for_exit(process);
+  for (const std::string other : {"--nodata 0", "--compress none", "--cog"}) {
+    const Result result = work_.run("spillway dem" + how + "'b/d_{x}_{y}.tif' " + other);
+    EXPECT_NE(result.exit_code, 0) << other;
+    EXPECT_THAT(result.err, HasSubstr("folder")) << other;
+  }
+}
+
+TEST_F(DemTiles, OfPointsCountThoseInTheirOutlines) {
+  work_.write(
+      "two.geojson",
+      R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"EPSG:32633"}},"features":[
+    {"type":"Feature","properties":{"n":1},"geometry":{"type":"Polygon","coordinates":[[[500000,4100000],[500500,4100000],[500500,4100400]]]}},
+    {"type":"Feature","properties":{"n":2},"geometry":{"type":"Polygon","coordinates":[[[500000,4100000],[500500,4100400],[500000,4100400]]]}}]})");
+  const auto stats = make("-o 't_{n}.tif' --tiles two.geojson --product count,max --fill-voids");
+  const auto one = make("-o one.tif --product count,max --fill-voids");
+  EXPECT_EQ(stats["files"], 2);
+  for (const char* count : {"points_in_pixels", "pixels_with_points", "filled_pixels"}) {
+    EXPECT_EQ(stats[count], one[count]) << count;
+  }
 }
 
 }  // namespace

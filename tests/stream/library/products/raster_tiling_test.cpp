@@ -76,6 +76,7 @@ TEST(SquareTiling, TellsWhyARasterCannotBeCut) {
   EXPECT_NE(refusal_of(raster, 10, "d_{x}.tif").find("{x} and {y}"), std::string::npos);
   EXPECT_NE(refusal_of(raster, 10, "{x}/{y}.tif").find("{x} and {y}"), std::string::npos);
   EXPECT_NE(refusal_of(raster, 0).find("above 0"), std::string::npos);
+  EXPECT_NE(refusal_of(raster, 1e30).find("whole number of pixels"), std::string::npos);
 }
 
 TEST(SquareTiling, FindsFilesThatLookLikeOthersOfItsTiles) {
@@ -85,6 +86,8 @@ TEST(SquareTiling, FindsFilesThatLookLikeOthersOfItsTiles) {
        {"d_0_0.tif", "d_-10_2.5.tif", "d_a_0.tif", "xd_0_0.tif", "d_1_1.tif.part"}) {
     std::ofstream(folder / name) << "x";
   }
+  std::ofstream(folder / "a^\\1[+]_5_5.tif") << "x";
+  EXPECT_EQ(SquareTiling(folder / "a^\\1[+]_{x}_{y}.tif", 10).others_than({}).size(), 1U);
   const SquareTiling tiling(folder / "d_{x}_{y}.tif", 10);
   EXPECT_EQ(tiling.others_than({folder / "d_0_0.tif"}),
             (std::vector<std::string>{folder / "d_-10_2.5.tif"}));
