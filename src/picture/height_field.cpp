@@ -94,8 +94,10 @@ std::vector<std::uint8_t> cast_shadows(const HeightField& field, const Light& li
   const double azimuth = light.azimuth * std::numbers::pi / 180;
   const double slope = std::tan(light.altitude * std::numbers::pi / 180);
   if (!(slope < kSteepestSlope)) return shadows;
-  const double east = std::sin(azimuth);
-  const double south = -std::cos(azimuth);
+  // Along an edge of the field light must not leave it by a rounding.
+  const auto without_rounding = [](double part) { return std::abs(part) < 1e-12 ? 0.0 : part; };
+  const double east = without_rounding(std::sin(azimuth));
+  const double south = without_rounding(-std::cos(azimuth));
   const auto shadow_at = [&](std::uint32_t column, std::uint32_t row, double node) {
     // The steepest way up to what stands in the direction of the light.
     double steepest = slope - kSoft;

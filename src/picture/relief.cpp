@@ -63,7 +63,8 @@ double rounded_to_two_digits(double value) {
 }
 
 Colour shaded(const Colour& colour, double brightness, double level_brightness) {
-  const double relative = brightness / level_brightness;
+  constexpr double kLeast = 255e-6;  // light along the ground leaves level places dark
+  const double relative = brightness / std::max(level_brightness, kLeast);
   if (relative <= 1) {
     return mix(kBlack, colour, kDarkest + (1 - kDarkest) * static_cast<float>(relative));
   }

@@ -78,13 +78,16 @@ void ReliefColours::take_categories(PictureColour colour, ReliefSamples& samples
     const Category category = category_of(colour, static_cast<std::uint8_t>(i));
     legend.entries.push_back({as_colour(category.colour), category.name});
   }
-  description_ = fmt::format("{} kinds of {} in colours", legend.entries.size(), legend.title);
+  description_ = fmt::format("{} kind{} of {} in colours", legend.entries.size(),
+                             legend.entries.size() == 1 ? "" : "s", legend.title);
   of_pixel_ = [this](std::size_t pixel) { return colours_->colour(pixel); };
 }
 
-/// Where no number is above 255, they are of 8 bits, whatever their type.
+/// Where no number is above 255, they are of 8 bits, whatever their type; where none is above 1,
+/// shares.
 void ReliefColours::take_rgb(ReliefSamples& samples) {
-  const float most = samples.largest_number() > 255 ? 65535 : 255;
+  const float largest = samples.largest_number();
+  const float most = largest > 255 ? 65535 : largest > 1 ? 255 : 1;
   samples.collect_numbers([&](std::uint32_t column, std::uint32_t row, const auto& numbers) {
     ByteColour colour{};
     for (std::size_t k = 0; k < colour.size(); ++k) {

@@ -152,8 +152,15 @@ HeightPixels ReliefSamples::collect(const PictureOptions& options) {
   SampleTiles tiles(dem_.grid(), heights);
   dem_.write(tiles, [](std::uint64_t) {});
   if (heights.empty()) {
-    throw Failure(options.zoom ? "nothing is seen: the zoom lies beside all triangles"
-                               : "nothing is seen: no triangle has an area",
+    throw Failure(options.zoom
+                      ? "nothing is seen: the zoom lies beside all triangles"
+                      : "nothing is seen: no triangle has an area, or all are thinner than a pixel",
+                  ErrorCode::kDegenerateInput);
+  }
+  const std::size_t count = std::size_t{heights.columns()} * heights.rows();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (heights.samples(i) == 0 || std::isfinite(heights.height(i))) continue;
+    throw Failure("there are heights beyond 3.4e38, which a picture cannot show",
                   ErrorCode::kDegenerateInput);
   }
   return heights;

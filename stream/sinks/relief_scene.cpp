@@ -108,9 +108,6 @@ std::unique_ptr<Scene> make_relief_scene(const PictureOptions& options, const Sc
                                          std::uint64_t memory, unsigned threads,
                                          ScratchFolder& scratch) {
   if (options.slice) throw InvalidArgument("a slice is of tetrahedra, and these are triangles");
-  if (options.view && !((*options.view)[1] > 0)) {
-    throw InvalidArgument("a terrain is seen from above: give an elevation above 0, up to 90");
-  }
   return std::make_unique<ReliefScene>(options, mesh, memory, threads, scratch);
 }
 

@@ -49,6 +49,13 @@ TEST(Relief, AConeIsBrightToTheNorthWestAndDarkToTheSouthEast) {
   EXPECT_GT(brightness(picture, 39, 20), brightness(picture, 39, 39));
 }
 
+TEST(Relief, LightAlongTheGroundLeavesWhatItDoesNotMeetDark) {
+  const Picture picture =
+      drawn(pixels_of(cone), {.exaggeration = 1, .light = {.azimuth = 315, .altitude = 0}});
+  EXPECT_GT(brightness(picture, 20, 20), 2 * brightness(picture, 39, 39));
+  EXPECT_LT(brightness(picture, 39, 39), 0.9F);
+}
+
 TEST(Relief, AConeLooksTheSameMirroredAtTheDirectionOfLight) {
   const Picture picture = drawn(pixels_of(cone), {.exaggeration = 1});
   for (std::uint32_t row = 0; row < kSide; ++row) {

@@ -113,6 +113,21 @@ TEST(CastShadows, FallAwayFromTheLight) {
   EXPECT_FALSE(in_shadow(315, 36, 36));
 }
 
+TEST(CastShadows, OfALightAlongAnEdgeFallOnTheEdge) {
+  const auto wall = [](double column, double row) {
+    return std::max(column, row) >= kSide - 3 ? 10.0 : 0.0;  // in the east and the south
+  };
+  const HeightField field = field_of(wall);
+  const auto from_the_east = cast_shadows(field, {90, 30});
+  for (std::uint32_t row = 0; row < 10; ++row) {
+    EXPECT_EQ(from_the_east[std::size_t{row} * kSide + kSide - 6], 255) << row;
+  }
+  const auto from_the_south = cast_shadows(field, {180, 30});
+  for (std::uint32_t column = 0; column < 10; ++column) {
+    EXPECT_EQ(from_the_south[std::size_t{kSide - 6} * kSide + column], 255) << column;
+  }
+}
+
 TEST(CastShadows, OfALightOverheadThereAreNone) {
   const auto shadows = cast_shadows(field_of(tower), {0, 90});
   EXPECT_EQ(std::ranges::count(shadows, 0), kSide * kSide);

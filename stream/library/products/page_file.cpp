@@ -32,6 +32,7 @@ constexpr std::array<double, 2> kView = {200, 40};
 
 void check(const PictureOptions& options, std::uint64_t triangles) {
   check_picture(options);
+  check_seen_from_above(options);
   const char* const unused = options.size          ? "size in pixels"
                              : options.wireframe   ? "wireframe"
                              : options.transparent ? "transparent background"
@@ -210,7 +211,7 @@ void PageFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/
   if (report_.triangles == 0) {
     throw Failure(
         fmt::format("nothing is seen: what there is fits between the {} x {} heights of the page; "
-                    "give it more triangles",
+                    "give it more triangles, or a smaller zoom",
                     report_.columns, report_.rows),
         ErrorCode::kDegenerateInput);
   }

@@ -23,6 +23,12 @@ constexpr std::uint64_t kPictureShare = 2;
 
 }  // namespace
 
+void check_seen_from_above(const PictureOptions& options) {
+  if (options.view && !((*options.view)[1] > 0)) {
+    throw InvalidArgument("a terrain is seen from above: give an elevation above 0, up to 90");
+  }
+}
+
 void check_picture(const PictureOptions& options) {
   if (options.zoom) {
     const auto& [low, high] = *options.zoom;

@@ -16,6 +16,9 @@ inline constexpr std::uint64_t kPixelShare = 4;
 /// Throws Failure (kInvalidArgument) for options that no picture has.
 void check_picture(const PictureOptions& options);
 
+/// Throws Failure (kInvalidArgument) for a view of a terrain that is not from above.
+void check_seen_from_above(const PictureOptions& options);
+
 /// Throws Failure (kInvalidArgument) if vertices lack what colours are to stand for.
 void check_picture_attributes(const PictureOptions& options, const AttributeLayout& there);
 

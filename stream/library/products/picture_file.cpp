@@ -100,6 +100,7 @@ PictureFile::PictureFile(const std::string& path, const PictureOptions& options,
   check_picture_memory(fmt::format("a picture of {} pixels a side", size),
                        std::uint64_t{size} * size * bytes, context.memory());
   check_can_create(disk(), path_);
+  if (options_.world_file) check_can_create(disk(), world_file_path(path_));
 }
 
 CrsNeed PictureFile::crs_need() const {
@@ -116,6 +117,8 @@ unsigned PictureFile::feeding_threads(unsigned threads) const {
 BlockSink& PictureFile::open(const MeshStart& start) {
   dimension_ = start.header.dimension;
   refuse_higher_dimensions(dimension_, "a picture shows");
+  if (dimension_ == 2) check_seen_from_above(options_);
+  if (dimension_ == 2 && (options_.view || options_.shadows)) refuse_without_heights(start);
   crs_ = start.header.crs;
   if (is_geotiff_ && dimension_ != 2) {
     throw InvalidArgument("a GeoTIFF lies on a map, and these are tetrahedra: make a PNG");

@@ -101,11 +101,12 @@ class Page(unittest.TestCase):
         return picture
 
     def pixel(self, x, y, view):
-        """Where a place of the surface is seen: a pinhole camera that looks at the middle of the grid."""
+        """Where a place of the surface is seen: a pinhole camera that looks at the middle of the grid and
+        of the heights in colours."""
         relief = self.relief
         longer = (max(relief["columns"], relief["rows"]) - 1) * relief["side"]
         middle = [relief["columns"] * relief["side"] / 2, 80 - relief["rows"] * relief["side"] / 2]
-        z = (height(x, y) - (relief["lowest"] + relief["highest"]) / 2) * EXAGGERATION
+        z = (height(x, y) - sum(relief["range"]) / 2) * EXAGGERATION
         place = [2 * value / longer for value in (x - middle[0], y - middle[1], z)]
         a, e = math.radians(view["azimuth"]), math.radians(view["elevation"])
         # Turned about the vertical until one looks from the south, then tipped.
