@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/rasters/world_file.h"
 #include "src/geometry/simplex_name.h"
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
@@ -116,6 +117,9 @@ void check_outputs(const RenderCommandOptions& options) {
   }
   check_duplicates(options, options.dimension);
   check_statistics_file(options, options.output, "the picture");
+  if (options.world_file) {
+    check_statistics_file(options, formats::world_file_path(options.output), "the world file");
+  }
 }
 
 void say(const RenderCommandOptions& options, const Report& report, const PictureReport& picture,

@@ -246,6 +246,7 @@ constexpr std::array kRefused = {
     Refused{"WordsOnAMap", "-o a.tif --scale-bar", "where no words go"},
     Refused{"TransparentGeoTiff", "-o a.tif --transparent", "transparent anyway"},
     Refused{"WorldFileOfAGeoTiff", "-o a.tif --world-file", "tells its place itself"},
+    Refused{"WorldFileThatIsForStatistics", "-o a.png --world-file --stats a.pgw", "world file"},
     Refused{"WorldFileOfAPipe", "-o - --world-file | cat; exit 2", "lies beside its picture"},
     Refused{"ColoursOfAPageThatAreNotThere", "-o a.html --color rgb", "no attribute \"red\""},
     Refused{"LegendOfAPage", "-o a.html --legend", "a page has no legend but its own"},
