@@ -15,6 +15,7 @@ struct GridSquare {
   std::int64_t row = 0;
   std::int64_t column = 0;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const GridSquare&) const = default;
 };
 

@@ -14,6 +14,7 @@ struct Crossing {
   std::uint32_t row;
   std::uint32_t column;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
   auto operator<=>(const Crossing&) const = default;
 };
 

@@ -28,8 +28,7 @@ RasterSheets::RasterSheets(const PixelGrid& raster, std::span<const SheetPlace> 
   is_whole_ =
       sheets_.size() == 1 && sheets_[0].rows == raster.rows && sheets_[0].columns == raster.columns;
   std::ranges::sort(band_rows_);
-  const auto repeated = std::ranges::unique(band_rows_);
-  band_rows_.erase(repeated.begin(), repeated.end());
+  band_rows_.erase(std::unique(band_rows_.begin(), band_rows_.end()), band_rows_.end());
   bands_.resize(band_rows_.size());
   for (std::size_t sheet = 0; sheet < sheets_.size(); ++sheet) {
     const PixelWindow& window = sheets_[sheet].window;

@@ -74,7 +74,7 @@ struct TileLayout {
   // Of the ring, whose rows and columns are counted from one beyond the sheet: 0 to rows + 1.
 
   [[nodiscard]] std::uint64_t ring_pixels() const {
-    return margin * 2 * (std::uint64_t{columns} + 2 + rows);
+    return std::uint64_t{2} * margin * (std::uint64_t{columns} + 2 + rows);
   }
   [[nodiscard]] std::uint64_t ring_tiles() const { return (ring_pixels() + kPixels - 1) / kPixels; }
   [[nodiscard]] bool is_in_ring(std::uint32_t row, std::uint32_t column) const {

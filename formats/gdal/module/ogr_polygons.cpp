@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
 
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,7 @@ namespace {
 
 std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
   std::vector<Point<2>> points;
+  points.reserve(static_cast<std::size_t>(ring.getNumPoints()));
   for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
   if (points.size() > 1 && points.front() == points.back()) points.pop_back();
   return points;

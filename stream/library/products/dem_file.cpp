@@ -488,6 +488,7 @@ std::uint64_t DemFile::check_early_files() const {
 void DemFile::write_vrt(const std::vector<std::string>& files) {
   if (files.empty()) return;
   std::vector<std::string> absolute;
+  absolute.reserve(files.size());
   for (const std::string& file : files) absolute.push_back(std::filesystem::absolute(file));
   const std::string text =
       gdal().mosaic_text(absolute, dem_->grid(), std::filesystem::absolute(options_.vrt));

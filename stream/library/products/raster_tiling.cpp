@@ -18,9 +18,8 @@ std::string vrt_path_of(const std::string& pattern) {
   const auto is_separator = [&](char c) { return kSeparators.find(c) != std::string_view::npos; };
   const std::filesystem::path path(pattern);
   std::string stem = std::regex_replace(path.stem().string(), std::regex("\\{[^{}]*\\}"), "_");
-  const auto repeated =
-      std::ranges::unique(stem, [&](char a, char b) { return is_separator(a) && is_separator(b); });
-  stem.erase(repeated.begin(), repeated.end());
+  const auto both = [&](char a, char b) { return is_separator(a) && is_separator(b); };
+  stem.erase(std::unique(stem.begin(), stem.end(), both), stem.end());
   const std::size_t first = stem.find_first_not_of(kSeparators);
   if (first == std::string::npos) return path.parent_path() / "tiles.vrt";
   stem = stem.substr(first, stem.find_last_not_of(kSeparators) + 1 - first);
