@@ -157,4 +157,8 @@ std::size_t leaf_points_for(std::uint64_t points, int dimension, const MemoryPla
                                  std::min(costs.small_leaf, plan.leaf_points), plan.leaf_points);
 }
 
+unsigned threads_beside(std::uint64_t own, std::uint64_t limit, unsigned wanted_threads) {
+  return plan_memory(limit - own, 2, wanted_threads).threads;
+}
+
 }  // namespace spillway::stream

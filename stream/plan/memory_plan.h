@@ -27,6 +27,10 @@ struct MemoryPlan {
 MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threads,
                        std::uint64_t whole = 0, bool early = false, std::size_t record_size = 0);
 
+/// How many of so many threads a plan has for a triangulation in the plane, beside a product that
+/// takes `own` bytes of the limit. Throws likewise.
+unsigned threads_beside(std::uint64_t own, std::uint64_t limit, unsigned wanted_threads);
+
 /// The capacity of tiles for `points` points: the plan's, and larger where that would be very many
 /// tiles, as far as there is room.
 std::size_t tile_points_for(std::uint64_t points, const MemoryPlan& plan);

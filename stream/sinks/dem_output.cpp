@@ -258,8 +258,8 @@ void DemOutput::make_bands(std::uint64_t tile, Slot& slot) const {
 /// Leaves nothing beside the outline.
 void DemOutput::cut_out(std::uint64_t tile, std::vector<float>& bands) const {
   const auto [rows, columns] = tiles_.size(tile);
-  const std::uint32_t top = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
-  const std::uint32_t left = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
+  const std::uint32_t top = tiles_.first_row(tile);
+  const std::uint32_t left = tiles_.first_column(tile);
   for (std::uint32_t row = 0; row < rows; ++row) {
     std::uint32_t column = 0;
     const auto clear_to = [&](std::uint32_t end) {
@@ -280,8 +280,8 @@ void DemOutput::cut_out(std::uint64_t tile, std::vector<float>& bands) const {
 /// Pixels without points get the height of the triangle at their centre.
 void DemOutput::fill_voids(std::uint64_t tile, Slot& slot) const {
   const TileLayout::Size size = tiles_.size(tile);
-  const std::uint32_t top = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
-  const std::uint32_t left = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
+  const std::uint32_t top = tiles_.first_row(tile);
+  const std::uint32_t left = tiles_.first_column(tile);
   const std::span<const float> heights = band_of(slot.layers, heights_);
   slot.filled = 0;
   bool is_first = true;
@@ -306,8 +306,8 @@ void DemOutput::fill_voids(std::uint64_t tile, Slot& slot) const {
 void DemOutput::derive(std::uint64_t tile, Slot& slot) const {
   const auto [rows, columns] = tiles_.size(tile);
   const PixelGrid& grid = tiles_.whole;
-  const std::uint32_t first_row = tiles_.window.row_begin + tiles_.row(tile) * kRasterTile;
-  const std::uint32_t first_column = tiles_.window.column_begin + tiles_.column(tile) * kRasterTile;
+  const std::uint32_t first_row = tiles_.first_row(tile);
+  const std::uint32_t first_column = tiles_.first_column(tile);
   for (std::uint32_t row = 0; row < rows; ++row) {
     const Point<2> lengths = lengths_at(options_.ground, grid.centre_y(first_row + row));
     const Point<2> sides = {lengths[0] * grid.resolution, lengths[1] * grid.resolution};

@@ -49,6 +49,13 @@ struct TileLayout {
   [[nodiscard]] std::uint32_t column(std::uint64_t tile) const {
     return static_cast<std::uint32_t>(tile % across);
   }
+  /// The row and the column of the whole raster that it begins with.
+  [[nodiscard]] std::uint32_t first_row(std::uint64_t tile) const {
+    return window.row_begin + row(tile) * kRasterTile;
+  }
+  [[nodiscard]] std::uint32_t first_column(std::uint64_t tile) const {
+    return window.column_begin + column(tile) * kRasterTile;
+  }
   /// How many rows and columns of it are in the sheet.
   [[nodiscard]] Size size(std::uint64_t tile) const {
     return {std::min(kRasterTile, rows - row(tile) * kRasterTile),

@@ -10,6 +10,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/gdal/module/gdal_errors.h"
@@ -161,6 +162,13 @@ std::string wkt_of(const OGRSpatialReference* crs) {
                   ErrorCode::kInvalidArgument);
   }
   return wkt;
+}
+
+std::string wkt_of_layer(const OGRSpatialReference* crs) {
+  // What a GeoPackage has instead of no coordinate system (OGC 12-128r18, table 3).
+  const bool undefined =
+      crs != nullptr && std::string_view(crs->GetName()).starts_with("Undefined ");
+  return undefined ? "" : wkt_of(crs);
 }
 
 std::string crs_to_wkt(const std::string& crs) {

@@ -25,4 +25,7 @@ CrsKind crs_kind(const std::string& crs);
 /// The coordinate system as Gdal::crs_to_wkt() gives it; empty if there is none.
 std::string wkt_of(const OGRSpatialReference* crs);
 
+/// That of a vector layer, likewise.
+std::string wkt_of_layer(const OGRSpatialReference* crs);
+
 }  // namespace spillway::formats

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <string_view>
 #include <vector>
 
 #include "formats/gdal/module/crs.h"
@@ -71,10 +70,7 @@ PolygonLayer read_ogr_polygons(const std::string& path) {
   }
   OGRLayer& layer = *file->GetLayer(0);
   PolygonLayer result;
-  const OGRSpatialReference* const crs = layer.GetSpatialRef();
-  if (crs != nullptr && !std::string_view(crs->GetName()).starts_with("Undefined ")) {
-    result.crs = wkt_of(crs);
-  }
+  result.crs = wkt_of_layer(layer.GetSpatialRef());
   for (const auto& feature : layer) result.polygons.push_back(feature_of(*feature, path));
   if (gdal_failed()) {
     throw Failure(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,

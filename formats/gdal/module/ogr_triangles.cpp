@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,13 +40,7 @@ class OgrTriangles : public TriangleLayer {
     layer_->ResetReading();
   }
 
-  [[nodiscard]] std::string crs() const override {
-    const OGRSpatialReference* const crs = layer_->GetSpatialRef();
-    // What a GeoPackage has instead of no coordinate system (OGC 12-128r18, table 3).
-    const bool undefined =
-        crs != nullptr && std::string_view(crs->GetName()).starts_with("Undefined ");
-    return undefined ? "" : wkt_of(crs);
-  }
+  [[nodiscard]] std::string crs() const override { return wkt_of_layer(layer_->GetSpatialRef()); }
 
   [[nodiscard]] std::string metadata(const std::string& name) const override {
     const char* const text = layer_->GetMetadataItem(name.c_str());

@@ -77,6 +77,10 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
 
 std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit / kLineShare; }
 
+std::uint64_t ContourFile::memory_of_squares() const {
+  return names_ ? own_memory(context().memory()) / kSquareShare : 0;
+}
+
 BlockSink& ContourFile::open(const MeshStart& start) {
   refuse_tetrahedra(start);
   refuse_without_heights(start);
@@ -91,8 +95,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                .tolerance = {.smooth = options_.smooth.value_or(0),
                              .simplify = options_.simplify.value_or(0)},
                .finds_hull = options_.bands,
-               .memory = own_memory(context().memory()) / (names_ ? kSquareShare : 1) *
-                         (names_ ? kSquareShare - 1 : 1)};
+               .memory = own_memory(context().memory()) - memory_of_squares()};
   return *begin_again();
 }
 
@@ -101,7 +104,7 @@ BlockSink* ContourFile::begin_again() {
   writer_.reset();
   bands_.reset();
   if (writes_file_ && names_) {
-    squares_.emplace(names_->side(), own_memory(context().memory()) / kSquareShare, *scratch_);
+    squares_.emplace(names_->side(), memory_of_squares(), *scratch_);
   } else if (writes_file_) {
     file_.emplace(format_, layer_);
     if (options_.bands) bands_.emplace(levels_, *scratch_);

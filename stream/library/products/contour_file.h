@@ -46,6 +46,7 @@ class ContourFile final : public OwnSink<ContourSink> {
   void add(std::span<const Point<2>> points, std::int64_t level);
 
   void add_line(VectorLayer& layer, std::span<const Point<2>> points, std::int64_t level);
+  [[nodiscard]] std::uint64_t memory_of_squares() const;
   void add_bands();
   [[nodiscard]] std::uint64_t write_tiles();
 

@@ -217,7 +217,7 @@ std::uint64_t DemFile::own_memory(std::uint64_t limit) const { return limit / kP
 
 unsigned DemFile::feeding_threads(unsigned threads) const {
   const std::uint64_t limit = context().memory();
-  return plan_memory(limit - own_memory(limit), 2, threads).threads;
+  return threads_beside(own_memory(limit), limit, threads);
 }
 
 bool DemFile::wants_simplices() const {

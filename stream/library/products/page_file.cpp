@@ -171,7 +171,7 @@ std::uint64_t PageFile::own_memory(std::uint64_t limit) const { return limit / k
 
 unsigned PageFile::feeding_threads(unsigned threads) const {
   const std::uint64_t limit = context().memory();
-  return plan_memory(limit - own_memory(limit), 2, threads).threads;
+  return threads_beside(own_memory(limit), limit, threads);
 }
 
 BlockSink& PageFile::open(const MeshStart& start) {

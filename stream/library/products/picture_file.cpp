@@ -111,7 +111,7 @@ std::uint64_t PictureFile::own_memory(std::uint64_t limit) const { return limit 
 
 unsigned PictureFile::feeding_threads(unsigned threads) const {
   const std::uint64_t limit = context().memory();
-  return plan_memory(limit - own_memory(limit), 2, threads).threads;
+  return threads_beside(own_memory(limit), limit, threads);
 }
 
 BlockSink& PictureFile::open(const MeshStart& start) {

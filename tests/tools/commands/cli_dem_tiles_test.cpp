@@ -33,6 +33,14 @@ class DemTiles : public ::testing::Test {
     return nlohmann::json::parse(work_.read("stats.json"))["raster"];
   }
 
+  /// Writes NAME.gpkg of lines with a name and a geometry as WKT.
+  void write_layer(const std::string& name, const std::string& lines,
+                   const std::string& options = "") {
+    work_.write(name + ".csv", "name,WKT\n" + lines);
+    work_.succeed(
+        fmt::format("ogr2ogr -q {0} {1}.gpkg {1}.csv -oo GEOM_POSSIBLE_NAMES=WKT", options, name));
+  }
+
   /// Compares all bands of two rasters of the same place.
   void expect_equal(const std::string& a, const std::string& b) {
     const OpenedRaster first(work_, a);
@@ -113,12 +121,10 @@ TEST_F(DemTiles, WithoutDataHaveNoFile) {
 }
 
 TEST_F(DemTiles, OfPolygonsHaveThePixelsWhoseCentresLieInThem) {
-  work_.write("sheets.csv",
-              "name,WKT\n"
+  write_layer("sheets",
               "a,\"POLYGON((500160 4100160,500210 4100150,500205 4100240,500160 4100160))\"\n"
               "b,\"POLYGON((500210 4100150,500270 4100190,500205 4100240,500210 4100150))\"\n"
               "c,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
-  work_.succeed("ogr2ogr -q sheets.gpkg sheets.csv -oo GEOM_POSSIBLE_NAMES=WKT");
   const auto stats = make("-o 'p_{name}.tif' --align --tiles sheets.gpkg --vrt all.vrt");
   EXPECT_EQ(stats["files"], 2);
   EXPECT_EQ(stats["vrt"], "all.vrt");
@@ -215,19 +221,15 @@ TEST_F(DemTiles, TellWhatIsWrong) {
               HasSubstr("cannot read missing.gpkg"));
   EXPECT_THAT(refused("-o d.tif --vrt d.vrt"), HasSubstr("without --tiles"));
   EXPECT_THAT(refused("-o 'd_{x}_{y}.tif' --tiles 50 --align"), HasSubstr("align"));
-  work_.write("lines.csv", "name,WKT\na,\"LINESTRING(0 0,1 1)\"\n");
-  work_.succeed("ogr2ogr -q lines.gpkg lines.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  write_layer("lines", "a,\"LINESTRING(0 0,1 1)\"\n");
   EXPECT_THAT(refused("-o 'd_{name}.tif' --tiles lines.gpkg"),
               HasSubstr("feature 1 is no polygon, but LINESTRING"));
-  work_.write("twice.csv",
-              "name,WKT\na,\"POLYGON((0 0,1 0,1 1,0 0))\"\na,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
-  work_.succeed("ogr2ogr -q twice.gpkg twice.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  write_layer("twice", "a,\"POLYGON((0 0,1 0,1 1,0 0))\"\na,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
   EXPECT_THAT(refused("-o 'd_{name}.tif' --tiles twice.gpkg"),
               HasSubstr("polygons 1 and 2 would both be d_a.tif"));
   EXPECT_THAT(refused("-o 'd_{id}.tif' --tiles twice.gpkg"), HasSubstr("no field \"id\""));
   EXPECT_THAT(refused("-o d.tif --tiles twice.gpkg"), HasSubstr("need a field"));
-  work_.write("far.csv", "name,WKT\na,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
-  work_.succeed("ogr2ogr -q far.gpkg far.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  write_layer("far", "a,\"POLYGON((0 0,1 0,1 1,0 0))\"\n");
   EXPECT_THAT(refused("-o 'd_{name}.tif' --tiles far.gpkg"),
               HasSubstr("none of the polygons has a pixel of the raster"));
   EXPECT_THAT(refused("-o 'd_{name}.tif'"), HasSubstr("give --tiles"));
@@ -235,9 +237,8 @@ TEST_F(DemTiles, TellWhatIsWrong) {
 }
 
 TEST_F(DemTiles, OfPolygonsHaveTheirCoordinateSystemUnlessItIsForced) {
-  work_.write("sheet.csv",
-              "name,WKT\na,\"POLYGON((500160 4100160,500210 4100150,500205 4100240))\"\n");
-  work_.succeed("ogr2ogr -q -a_srs EPSG:32633 sheet.gpkg sheet.csv -oo GEOM_POSSIBLE_NAMES=WKT");
+  write_layer("sheet", "a,\"POLYGON((500160 4100160,500210 4100150,500205 4100240))\"\n",
+              "-a_srs EPSG:32633");
   const std::string arguments = "-o 'd_{name}.tif' --tiles sheet.gpkg --crs EPSG:32632";
   const Result refused = work_.run("spillway dem in.las --resolution 0.25 " + arguments);
   EXPECT_EQ(refused.exit_code, 1);
