@@ -558,7 +558,8 @@ class Resume(InFolder):
         return spillway.triangulate("hills.las", output, **{**names, **options})
 
     def test_a_program_that_is_killed_goes_on(self):
-        command("generate", "terrain", "-n", 150_000, "-o", "hills.las")
+        # So many that progress is told more than once after the first checkpoint.
+        command("generate", "terrain", "-n", 800_000, "-o", "hills.las")
         whole = self.run_of("whole.spm")
         program = (
             "import os, spillway\n"
