@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "formats/disk/file_system.h"
-
 namespace spillway::formats {
 
 /// Whether an output can be opened on trial without anybody noticing: a file that is there or is
@@ -13,6 +11,6 @@ namespace spillway::formats {
 bool can_be_tried(const std::string& path);
 
 /// Throws Failure if `path` cannot be created; says nothing about what cannot be tried.
-void check_can_create(FileSystem& files, const std::string& path);
+void check_can_create(const std::string& path);
 
 }  // namespace spillway::formats

@@ -1,5 +1,6 @@
 spillway_test(file_system_test unit
-  SOURCES formats/disk/file_system_test.cpp formats/disk/unfinished_files_test.cpp
+  SOURCES formats/disk/file_system_test.cpp formats/disk/output_check_test.cpp
+          formats/disk/unfinished_files_test.cpp
   LIBS spillway_formats)
 spillway_test(points_test unit
   SOURCES

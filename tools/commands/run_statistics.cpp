@@ -35,7 +35,7 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
   check_place(options.tasks_path, output, product, "--tasks");
   check_place(options.tasks_path, options.stats_path, "--stats", "--tasks");
   for (const std::string& path : {options.stats_path, options.tasks_path}) {
-    if (!path.empty() && is_first_rank()) check_can_create(disk(), path);
+    if (!path.empty() && is_first_rank()) check_can_create(path);
   }
 }
 

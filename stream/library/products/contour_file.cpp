@@ -71,7 +71,7 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
     names_.emplace(path_, options_.tile_side);
   }
   if (!writes_file_) return;
-  check_can_create(disk(), path_);
+  check_can_create(path_);
   tell_lost_layers(format_, path_, context);
 }
 

@@ -203,8 +203,8 @@ DemFile::DemFile(const std::string& path, const DemOptions& options, const Conte
     if (options_.vrt.empty()) options_.vrt = vrt_path_of(path_);
   }
   if (is_first_process(context)) {
-    check_can_create(disk(), path_);
-    if (tiling_) check_can_create(disk(), options_.vrt);
+    check_can_create(path_);
+    if (tiling_) check_can_create(options_.vrt);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/disk/file_system.h"
 #include "formats/disk/output_check.h"
 #include "formats/pages/relief_page.h"
 #include "formats/rasters/raster_formats.h"
@@ -164,7 +165,7 @@ PageFile::PageFile(const std::string& path, const PictureOptions& options, const
       most_triangles_ * (options_.colour == PictureColour::kHeight ? kBytesOfATriangle
                                                                    : kBytesOfAColouredTriangle),
       context.memory());
-  check_can_create(disk(), path_);
+  check_can_create(path_);
 }
 
 std::uint64_t PageFile::own_memory(std::uint64_t limit) const { return limit / kPixelShare; }

@@ -99,8 +99,8 @@ PictureFile::PictureFile(const std::string& path, const PictureOptions& options,
   if (options_.view || options_.shadows) bytes += kBytesOfAFieldsPixel;
   check_picture_memory(fmt::format("a picture of {} pixels a side", size),
                        std::uint64_t{size} * size * bytes, context.memory());
-  check_can_create(disk(), path_);
-  if (options_.world_file) check_can_create(disk(), world_file_path(path_));
+  check_can_create(path_);
+  if (options_.world_file) check_can_create(world_file_path(path_));
 }
 
 CrsNeed PictureFile::crs_need() const {
