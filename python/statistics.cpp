@@ -37,6 +37,9 @@ void add_mesh(const Report& report, py::dict& statistics) {
   statistics["lost"] = report.lost;
   statistics["output_format"] = report.output_format;
   statistics["output_bytes"] = report.output_bytes;
+  statistics["output_files"] = report.output_files;
+  statistics["outside_tiles"] = report.outside_tiles;
+  statistics["other_files"] = report.other_files;
 }
 
 void add_work(const Report& report, py::dict& statistics) {

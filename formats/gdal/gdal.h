@@ -84,6 +84,12 @@ class Gdal {
   /// geometries.
   [[nodiscard]] virtual PolygonLayer read_polygons(const std::string& path) const = 0;
 
+  /// What a polygon, its outer ring first, has in common with those of `area`, whose rings come in
+  /// no order: each its outer ring, counter-clockwise, then its holes, clockwise. What has no area is
+  /// left out. Throws Failure for polygons that cross themselves.
+  [[nodiscard]] virtual std::vector<PolygonRings> clip(const PolygonRings& polygon,
+                                                       const PolygonRings& area) const = 0;
+
   /// The names of all tables of a GeoPackage, of features, attributes and tiles; none if it cannot
   /// be read.
   [[nodiscard]] virtual std::vector<std::string> table_names(const std::string& path) const = 0;

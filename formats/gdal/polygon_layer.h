@@ -8,10 +8,12 @@
 
 namespace spillway::formats {
 
+/// The last point of a ring is joined to the first one.
+using PolygonRings = std::vector<std::vector<Point<2>>>;
+
 /// A polygon, or several, of a layer.
 struct PolygonFeature {
-  /// Outer ones and holes, in no order; the last point of a ring is joined to the first one.
-  std::vector<std::vector<Point<2>>> rings;
+  PolygonRings rings;                         ///< outer ones and holes, in no order
   std::map<std::string, std::string> fields;  ///< by name, as text
 };
 

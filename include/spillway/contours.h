@@ -35,9 +35,13 @@ struct ContourOptions {
   /// min_length. The edges of one band have to fit in memory, at some 200 bytes each.
   bool bands = false;
   /// Above 0: a file for each square of this side that has lines, whose edges lie on multiples of
-  /// it, with the lines cut at them; in the path "{x}" and "{y}" stand for its south-western
-  /// corner. Not of bands.
+  /// it, with lines and bands cut at them; in the path "{x}" and "{y}" stand for its south-western
+  /// corner.
   double tile_side = 0;
+  /// Or a file for each polygon of this vector file that has lines, cut at its edges; in the path
+  /// the names of its fields in braces, as "{name}", stand for their values. Its coordinate system
+  /// must be that of the terrain, unless `foreign_crs`.
+  std::string tile_polygons{};
 };
 
 /// What became of the lines.
@@ -50,6 +54,7 @@ struct ContourReport {
   double lowest = 0;
   double highest = 0;
   std::uint64_t spilled_bytes = 0;
+  std::uint64_t outside_tiles = 0;  ///< lines, or polygons of bands, in no tile and no file
   std::uint64_t files = 1;
   /// Files of other tiles that an earlier run may have left beside these.
   std::vector<std::string> other_files{};

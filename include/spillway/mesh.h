@@ -115,6 +115,16 @@ struct MeshFileOptions {
   /// Names of the attributes of points that their vertices keep, "all" for all of them. Nothing:
   /// none, but the colour of points in PLY, and what the mesh has that is converted.
   std::optional<std::vector<std::string>> attributes{};
+  /// Above 0: a file for each square of this side that has simplices, whose edges lie on multiples
+  /// of it; in the path "{x}" and "{y}" stand for its south-western corner. A simplex goes whole to
+  /// where the centroid of its corners lies in x and y, with its vertices. An eighth of the
+  /// context's memory is for what waits. Not over ranks.
+  double tile_side = 0;
+  /// Or a file for each polygon of this vector file that has simplices; in the path the names of
+  /// its fields in braces, as "{name}", stand for their values. Its coordinate system must be that
+  /// of the mesh, unless `foreign_crs`.
+  std::string tile_polygons{};
+  bool foreign_crs = false;
 };
 
 /// A mesh file, of any format that is written; "-" is standard output, as spm. It gets its name

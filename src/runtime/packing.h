@@ -25,6 +25,11 @@ class Packer {
     std::memcpy(bytes_.data() + at, &value, sizeof(T));
   }
 
+  /// As they are, without their number.
+  void put_bytes(std::span<const std::byte> bytes) {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+
   /// A list of values (a std::string, too) with its length.
   template <typename List>
   void put_list(const List& list) {
@@ -33,6 +38,7 @@ class Packer {
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
 
+  void clear() { bytes_.clear(); }
   [[nodiscard]] std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
   [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
@@ -66,9 +72,7 @@ class Unpacker {
     return list;
   }
 
-  [[nodiscard]] bool empty() const { return left_.empty(); }
-
- private:
+  /// So many bytes as they are.
   std::span<const std::byte> take_bytes(std::size_t count) {
     if (count > left_.size()) throw std::length_error("a message ends early");
     const auto taken = left_.first(count);
@@ -76,6 +80,9 @@ class Unpacker {
     return taken;
   }
 
+  [[nodiscard]] bool empty() const { return left_.empty(); }
+
+ private:
   std::span<const std::byte> left_;
 };
 

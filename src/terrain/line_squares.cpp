@@ -9,8 +9,7 @@
 namespace spillway::terrain {
 namespace {
 
-/// By the edges as they are computed.
-std::int64_t square_of(double coordinate, double side) {
+std::int64_t number_at(double coordinate, double side) {
   const auto number = static_cast<std::int64_t>(std::floor(coordinate / side));
   if (static_cast<double>(number + 1) * side <= coordinate) return number + 1;
   return static_cast<double>(number) * side > coordinate ? number - 1 : number;
@@ -62,7 +61,7 @@ void append_cut(const Point<2>& from, const Point<2>& to, double side,
 
 /// The square that a stretch between two edges lies in.
 GridSquare square_between(const Point<2>& a, const Point<2>& b, double side) {
-  return {square_of(a[1] + (b[1] - a[1]) / 2, side), square_of(a[0] + (b[0] - a[0]) / 2, side)};
+  return square_at({a[0] + (b[0] - a[0]) / 2, a[1] + (b[1] - a[1]) / 2}, side);
 }
 
 struct Piece {
@@ -71,6 +70,10 @@ struct Piece {
 };
 
 }  // namespace
+
+GridSquare square_at(const Point<2>& place, double side) {
+  return {number_at(place[1], side), number_at(place[0], side)};
+}
 
 void cut_at_squares(std::span<const Point<2>> line, double side,
                     const std::function<void(GridSquare, std::span<const Point<2>>)>& take) {

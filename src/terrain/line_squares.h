@@ -19,6 +19,9 @@ struct GridSquare {
   auto operator<=>(const GridSquare&) const = default;
 };
 
+/// The square of a side that a place lies in, by the edges as they are computed.
+GridSquare square_at(const Point<2>& place, double side);
+
 /// Cuts a line where it crosses edges of squares of a side, and calls take(square, points) with
 /// each piece, in order along the line. Pieces share the points at which they are cut, which lie on
 /// the edge exactly and do not depend on the line's direction. Pieces of a closed line that meet at

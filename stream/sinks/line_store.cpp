@@ -9,8 +9,7 @@ constexpr std::size_t kBatch = std::size_t{1} << 20;
 }  // namespace
 
 void LineStore::add(std::span<const Point<2>> points, std::int64_t level) {
-  last_.put(level);
-  last_.put_list(points);
+  put(last_, points, level);
   if (last_.bytes().size() < kBatch) return;
   if (!file_) file_ = scratch_.create("contours");
   batches_.push_back({file_->size(), last_.bytes().size()});

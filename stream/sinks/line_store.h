@@ -25,6 +25,12 @@ class LineStore {
 
   [[nodiscard]] std::uint64_t stored_bytes() const { return file_ ? file_->size() : 0; }
 
+  /// Adds a line to such bytes.
+  static void put(Packer& lines, std::span<const Point<2>> points, std::int64_t level) {
+    lines.put(level);
+    lines.put_list(points);
+  }
+
   /// Calls take(points, level) with each line of such bytes.
   template <typename Take>
   static void for_each(std::span<const std::byte> bytes, const Take& take) {

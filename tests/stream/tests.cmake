@@ -102,7 +102,8 @@ spillway_test(stream_library_test unit
           stream/library/products/check_test.cpp stream/library/products/height_test.cpp
           stream/library/products/info_test.cpp
           stream/library/products/point_comparison_test.cpp stream/library/products/product_test.cpp
-          stream/library/products/products_test.cpp stream/library/products/raster_tiling_test.cpp
+          stream/library/products/products_test.cpp stream/library/tiling/mesh_tiles_test.cpp
+          stream/library/tiling/raster_tiling_test.cpp
           stream/library/products/volume_test.cpp
   LIBS spillway_stream spillway_library)
 

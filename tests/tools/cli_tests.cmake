@@ -58,7 +58,7 @@ spillway_command_test(cli_progress_tests cli
 
 spillway_command_test(cli_batch_tests cli
   tools/commands/cli_batch_resume_test.cpp tools/commands/cli_batch_test.cpp
-  tools/commands/cli_contour_test.cpp)
+  tools/commands/cli_contour_test.cpp tools/commands/cli_vector_tiles_test.cpp)
 
 if(SPILLWAY_GDAL)
   spillway_command_test(cli_dem_tests cli

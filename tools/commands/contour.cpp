@@ -41,7 +41,7 @@ struct ContourCommandOptions : TerrainOptions {
   std::optional<double> smooth;
   std::optional<double> simplify;
   bool bands = false;
-  std::optional<double> tiles;
+  std::string tiles;
 };
 
 ContourOptions contour_options(const ContourCommandOptions& options) {
@@ -54,11 +54,12 @@ ContourOptions contour_options(const ContourCommandOptions& options) {
   contours.simplify = options.simplify;
   contours.bands = options.bands;
   if (options.bands) {
-    refuse_given(*options.app, {"--index", "--min-length", "--tiles"},
-                 "with --bands, which are no lines");
+    refuse_given(*options.app, {"--index", "--min-length"}, "with --bands, which are no lines");
   }
-  contours.tile_side = options.tiles.value_or(0);
-  if (!options.tiles) refuse_pattern(options.output);
+  const TileChoice tiles = parse_tiles(options.tiles);
+  contours.tile_side = tiles.side;
+  contours.tile_polygons = tiles.polygons;
+  if (options.tiles.empty()) refuse_pattern(options.output);
   if (!options.levels.empty()) {
     refuse_given(*options.app, {"--interval", "--base", "--index"},
                  "with --levels, which names all heights");
@@ -87,7 +88,14 @@ void say(const ContourCommandOptions& options, const Report& report, const Conto
                     "highest, {}",
                     contours.lowest, contours.highest));
   }
-  if (options.tiles) progress.say(fmt::format("{} tiles with lines", contours.files));
+  if (!options.tiles.empty()) {
+    const char* const what = options.bands ? "polygons" : "lines";
+    if (contours.outside_tiles > 0) {
+      progress.insist(fmt::format("warning: {} {} are in none of the tiles, and in no file",
+                                  contours.outside_tiles, what));
+    }
+    progress.say(fmt::format("{} tiles with {}", contours.files, what));
+  }
   warn_of_other_tiles(contours.other_files, options.output, progress);
   progress.say(fmt::format("{} vertices, {} triangles; {} {} of {} points, {:.2f} s",
                            report.mesh.vertices, report.mesh.simplices,
@@ -111,6 +119,7 @@ int run(const ContourCommandOptions& options) {
                       {"short_lines", contours->report().short_lines},
                       {"polygons", contours->report().polygons},
                       {"points", contours->report().points},
+                      {"outside_tiles", contours->report().outside_tiles},
                       {"files", contours->report().files},
                       {"spilled_bytes", contours->report().spilled_bytes}};
   write_statistics(options, report, facts, {{"contours", lines}});
@@ -146,9 +155,12 @@ Subcommand add_contour(CommandLine& root) {
                     1)
       .value_name("N")
       .show_default();
-  take_positive_number(app.add_option("--tiles", options->tiles,
-                                      "Cut lines into files, squares of this side in x and y"))
-      .value_name("SIDE");
+  add_tiles(app, options->tiles,
+            "Cut lines into files, of squares of this side or of the polygons of a file")
+      // The coordinate system of polygons is compared with that of a mesh, too.
+      .each([options = options.get()](const std::string& text) {
+        if (!parse_number(text)) options->own_options.emplace_back("--force-crs");
+      });
   take_positive_number(
       app.add_option("--min-length", options->min_length, "Leave out lines that are shorter"))
       .value_name("L");

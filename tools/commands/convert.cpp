@@ -17,6 +17,7 @@
 #include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
 #include "tools/commands/skipped_inputs.h"
+#include "tools/commands/tile_files.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/point_output.h"
@@ -34,6 +35,7 @@ constexpr const char* kExamples =
     "  spillway convert tile.laz -o tile.csv --attributes class,intensity\n"
     "  spillway convert 'tiles/*.laz' --sorted -o - | spillway triangulate - -o tin.spm\n"
     "  spillway convert tin.spm -o tin.ply\n"
+    "  spillway convert tin.spm -o 'tin_{x}_{y}.ply' --tiles 1000\n"
     "  spillway triangulate survey.las -o - | spillway convert - -o tin.obj\n"
     "Points and spm streams are converted as they come, in little memory; other meshes are read as "
     "a whole. Sorted points are all read first, within the memory limit.";
@@ -47,6 +49,7 @@ struct ConvertCommandOptions {
   std::vector<double> scale;   ///< none, one for all axes, or three
   std::vector<double> offset;  ///< likewise
   std::string attributes;      ///< names and commas, "all", "none"; empty: as the format has them
+  std::string tiles;           ///< of a mesh
   bool sorted = false;
   bool force = false;
   SortOptions sorting;
@@ -126,6 +129,7 @@ void tell_changes(const PointConversion& done, ProgressLine& progress) {
 
 int run_points(const ConvertCommandOptions& options, const Context& context,
                ProgressLine& progress) {
+  refuse_given(*options.app, {"--tiles"}, "on points: a mesh is cut into tiles");
   check_points_output(options);
   const PointOutput& output = options.output;
   PointFileOptions written{.format = format_name_of(output),
@@ -185,25 +189,32 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context,
     throw UsageError("several meshes do not become one: convert them one by one");
   }
   std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
-  if (!options.input.crs.empty()) {
+  const TileChoice tiles = parse_tiles(options.tiles);
+  if (!options.input.crs.empty() || !tiles.polygons.empty()) {
     std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
   }
   of_points.insert(of_points.end(), {"--scale", "--offset", "--force", "--las-version", "--sorted",
                                      "--cell-points", "--dim"});
   refuse_given(*options.app, of_points, fmt::format("on {}, which is a mesh", input));
   check_mesh_output(options);
+  if (options.tiles.empty()) refuse_pattern(options.output.path);
   const PointOutput& output = options.output;
   const MeshFormat& format = mesh_format(output.path, output.format);
   if (output.path == "-" && ::isatty(STDOUT_FILENO) != 0 && output.format.empty()) {
     throw UsageError("a mesh stream cannot go to a terminal: name a file, or pipe it on");
   }
   const auto mesh = open_mesh(input, mesh_options(options.input, options.mesh_format), context);
-  const auto file = create_mesh(
-      output.path, {.format = output.format, .attributes = attribute_names(options.attributes)},
-      context);
+  const auto file = create_mesh(output.path,
+                                {.format = output.format,
+                                 .attributes = attribute_names(options.attributes),
+                                 .tile_side = tiles.side,
+                                 .tile_polygons = tiles.polygons,
+                                 .foreign_crs = options.input.force_crs},
+                                context);
   const Report report = convert(*mesh, *file, context);
   const MeshTotals& totals = report.mesh;
   if (!report.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(report.lost, ", ")));
+  if (!options.tiles.empty()) say_mesh_tiles(report, output.path, progress);
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
                            files_of(output.path, format)));
   const std::string note = rounding_note(format, output.path);
@@ -249,6 +260,8 @@ Subcommand add_convert(CommandLine& root) {
       .value_name("FILE");
   add_choice(app, "--output-format", options->output.format, output_format_names(),
              "Format of the output, where the name does not tell");
+  add_tiles(app, options->tiles,
+            "Of a mesh, a file for each square of this side, or each polygon of a file");
   add_choice(app, "--mesh-format", options->mesh_format, mesh_format_names(),
              "The input is a mesh of this format, if neither content nor name tell it");
   add_las_version(app, options->output);

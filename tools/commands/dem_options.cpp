@@ -134,13 +134,14 @@ void set_tiles(const DemCommandOptions& options, DemOptions& dem) {
     return;
   }
   dem.vrt = options.vrt;
-  if (!parse_number(options.tiles)) {
-    dem.tile_polygons = options.tiles;
+  const TileChoice tiles = parse_tiles(options.tiles);
+  dem.tile_side = tiles.side;
+  dem.tile_polygons = tiles.polygons;
+  if (tiles.side == 0) {
     dem.foreign_crs = options.input.force_crs;
-    return;
+  } else {
+    refuse_given(*options.app, {"--align"}, "with tiles that are squares, which align pixels");
   }
-  refuse_given(*options.app, {"--align"}, "with tiles that are squares, which align pixels");
-  dem.tile_side = parse_resolution(options.tiles);
 }
 
 Extent parse_raster_bounds(const std::string& text) {
@@ -188,9 +189,8 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
       .group(group)
       // Its coordinate system is compared with that of a mesh, too.
       .each([&options](const std::string&) { options.own_options.emplace_back("--force-crs"); });
-  app.add_option("--tiles", options.tiles,
-                 "Cut the raster into squares of this side, or by the polygons of a file")
-      .value_name("SIDE|FILE")
+  add_tiles(app, options.tiles,
+            "Cut the raster into squares of this side, or by the polygons of a file")
       .group(group)
       // The coordinate system of polygons is compared with that of a mesh, too.
       .each([&options](const std::string& text) {

@@ -22,6 +22,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
 #include "tools/commands/skipped_inputs.h"
+#include "tools/commands/tile_files.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/options/triangulation_options.h"
@@ -40,6 +41,7 @@ constexpr const char* kExamples =
     "  spillway triangulate survey.las -o tin.ply\n"
     "  spillway triangulate north.las south.las -o tin.vtu --heights lowest\n"
     "  zcat points.txt.gz | spillway triangulate - -o - --output-format obj > tin.obj\n"
+    "  spillway triangulate survey.laz -o 'tin_{x}_{y}.ply' --tiles 1000\n"
     "  spillway triangulate scan.npy --dim 3 -o tetrahedra.vtu --stats run.json\n"
     "  spillway triangulate survey.las -o tin.ply --simulate-cores 1,2,4,...,1024\n"
     "  spillway triangulate survey.las -o tin.spm --memory 512M --scratch-folder /scratch\n"
@@ -58,6 +60,7 @@ struct TriangulateCommandOptions : TriangulationOptions {
   std::string disk_speed;
   std::string simulated_points;
   bool parts = false;
+  std::string tiles;
 
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
 };
@@ -66,7 +69,9 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
   app.add_option("IN", options.inputs,
                  "Point files, folders, 'patterns', @lists: one triangulation; - is a pipe")
       .required();
-  app.add_option("-o,--output", options.output, "Mesh file; - is standard output, as spm")
+  app.add_option("-o,--output", options.output,
+                 "Mesh file; - is standard output, as spm; of --tiles a pattern, like "
+                 "tin_{x}_{y}.ply")
       .required()
       .value_name("FILE");
   add_dimension(
@@ -80,6 +85,8 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
   app.add_flag(
       "--parts", options.parts,
       "Under mpirun: a file for each rank, NAME.0.EXT, NAME.1.EXT, ... (vtu: and NAME.pvtu)");
+  add_tiles(app, options.tiles,
+            "A file for each square of this side, or each polygon of a file, of whole simplices");
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
   add_triangulation_options(app, options);
@@ -126,6 +133,9 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
         fmt::format("{} simplices with an edge longer than {} left out: this is no longer the "
                     "Delaunay triangulation of all points",
                     report.left_out, *max_edge(options)));
+  }
+  if (!options.tiles.empty()) {
+    say_mesh_tiles(report, options.output, progress);
   }
   if (report.spilled_points > 0) {
     progress.detail(
@@ -205,6 +215,12 @@ void check_options(const TriangulateCommandOptions& options) {
     }
   }
   check_duplicates(options, options.dimension);
+  if (options.tiles.empty()) {
+    refuse_pattern(options.output);
+  } else if (options.parts || distributed::launch().as_ranks) {
+    throw UsageError(
+        "--tiles is for one process: write one mesh over ranks, and cut it with spillway convert");
+  }
   if (options.output_format.empty()) refuse_other_output(options.output);
   // mpirun gives its processes a terminal as standard output, whatever its own is.
   const bool on_terminal = ::isatty(STDOUT_FILENO) != 0 && !distributed::launch().as_ranks;
@@ -225,10 +241,14 @@ int run(const TriangulateCommandOptions& options) {
   limits.executor = rank_executor();
   const Context context(limits);
   reuse_freed_memory(kept_memory(options.dimension, context.memory()));
+  const TileChoice tiles = parse_tiles(options.tiles);
   const auto mesh = create_mesh(options.output,
                                 {.format = options.output_format,
                                  .parts = options.parts,
-                                 .attributes = attribute_names(options.attributes)},
+                                 .attributes = attribute_names(options.attributes),
+                                 .tile_side = tiles.side,
+                                 .tile_polygons = tiles.polygons,
+                                 .foreign_crs = options.input.force_crs},
                                 context);
   const auto points =
       open_points(options.inputs, point_options(options.input, options.dimension), context);

@@ -138,6 +138,8 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   json["output"] = facts.output;
   json["output_format"] = report.output_format;
   json["output_bytes"] = report.output_bytes;
+  json["output_files"] = report.output_files;
+  json["outside_tiles"] = report.outside_tiles;
   json["on_lattice"] = report.on_lattice;
   json["points"] = mesh.points;
   json["withheld"] = report.points.withheld;

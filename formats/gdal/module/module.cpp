@@ -15,6 +15,7 @@
 #include "formats/gdal/module/geotiff.h"
 #include "formats/gdal/module/geotiff_crs.h"
 #include "formats/gdal/module/mosaic.h"
+#include "formats/gdal/module/ogr_clip.h"
 #include "formats/gdal/module/ogr_polygons.h"
 #include "formats/gdal/vector_drivers.h"
 
@@ -80,6 +81,10 @@ class LoadedGdal : public Gdal {
   }
   [[nodiscard]] PolygonLayer read_polygons(const std::string& path) const override {
     return read_ogr_polygons(path);
+  }
+  [[nodiscard]] std::vector<PolygonRings> clip(const PolygonRings& polygon,
+                                               const PolygonRings& area) const override {
+    return clip_with_geos(polygon, area);
   }
   [[nodiscard]] std::vector<std::string> table_names(const std::string& path) const override {
     return geopackage_tables(path);

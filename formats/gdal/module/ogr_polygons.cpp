@@ -14,16 +14,8 @@
 namespace spillway::formats {
 namespace {
 
-std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
-  std::vector<Point<2>> points;
-  points.reserve(static_cast<std::size_t>(ring.getNumPoints()));
-  for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
-  if (points.size() > 1 && points.front() == points.back()) points.pop_back();
-  return points;
-}
-
 /// Adds the rings of a polygon or of a collection of some; false if it is anything else.
-bool add_rings(const OGRGeometry& geometry, std::vector<std::vector<Point<2>>>& rings) {
+bool add_rings(const OGRGeometry& geometry, PolygonRings& rings) {
   if (const auto* const parts = dynamic_cast<const OGRGeometryCollection*>(&geometry)) {
     for (const OGRGeometry* const part : parts) {
       if (!add_rings(*part, rings)) return false;
@@ -54,6 +46,14 @@ PolygonFeature feature_of(OGRFeature& feature, const std::string& path) {
 }
 
 }  // namespace
+
+std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
+  std::vector<Point<2>> points;
+  points.reserve(static_cast<std::size_t>(ring.getNumPoints()));
+  for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
+  if (points.size() > 1 && points.front() == points.back()) points.pop_back();
+  return points;
+}
 
 PolygonLayer read_ogr_polygons(const std::string& path) {
   forget_gdal_errors();

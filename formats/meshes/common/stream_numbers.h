@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "formats/meshes/common/mesh_stream.h"
 
@@ -29,6 +32,31 @@ class StreamNumbers {
   std::uint64_t first_;
   std::size_t fresh_;
   std::span<const std::uint64_t> imported_;
+};
+
+/// The short numbers of a block's vertices, by their stream numbers: its own come first, then those
+/// that it imports.
+class ShortNumbers {
+ public:
+  /// Of a block whose `fresh` new vertices are numbered from `first` on.
+  ShortNumbers(std::uint64_t first, std::size_t fresh) : first_(first), fresh_(fresh) {}
+
+  /// Of a vertex that has come. One of an earlier block is imported from now on.
+  std::uint32_t of(std::uint64_t vertex) {
+    if (vertex >= first_) return static_cast<std::uint32_t>(vertex - first_);
+    const auto [known, is_new] =
+        short_.try_emplace(vertex, static_cast<std::uint32_t>(fresh_ + imported_.size()));
+    if (is_new) imported_.push_back(vertex);
+    return known->second;
+  }
+
+  std::vector<std::uint64_t> take_imported() { return std::move(imported_); }
+
+ private:
+  std::uint64_t first_;
+  std::size_t fresh_;
+  std::vector<std::uint64_t> imported_;
+  std::unordered_map<std::uint64_t, std::uint32_t> short_;
 };
 
 }  // namespace spillway::formats

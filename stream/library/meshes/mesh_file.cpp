@@ -15,8 +15,15 @@
 #include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/attribute_records.h"
+#include "stream/library/products/surface_units.h"
 
 namespace spillway::stream {
+namespace {
+
+/// The part of the memory that is for what waits for the files of tiles.
+constexpr std::uint64_t kTileShare = 8;
+
+}  // namespace
 
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts) {
   for (const MeshFormat* const format : mesh_formats()) {
@@ -42,19 +49,29 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
 MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context)
     : OwnSink(context),
       target_(mesh_target(path, options.format, options.parts)),
-      attributes_(options.attributes),
+      options_(options),
+      tiling_(make_vector_tiling(path, options.tile_side, options.tile_polygons)),
       scratch_(context.state().scratch(context)),
       run_scratch_(scratch_.get()) {
   if (target_.parts && context.options().executor == nullptr) {
     throw InvalidArgument("parts are a file for each rank, and there is one process",
                           {.remedy = Remedy::kRanks});
   }
+  if (tiling_) check_tiles();
   if (target_.format == &kGpkgMesh) tell_lost_layers(kGeoPackage, target_.path, context);
+}
+
+void MeshFile::check_tiles() const {
+  if (context().options().executor != nullptr) {
+    throw InvalidArgument(
+        "tiles of a mesh are written by one process: let several write one mesh, and convert that");
+  }
+  check_can_create(target_.path);
 }
 
 /// As if the format held all.
 AttributeChoice MeshFile::asked_attributes(bool triangulated) const {
-  if (attributes_) return attribute_choice(*attributes_);
+  if (options_.attributes) return attribute_choice(*options_.attributes);
   if (!triangulated) return {.all = true};
   return target_.format->takes_colour ? colour_choice() : AttributeChoice{};
 }
@@ -67,9 +84,9 @@ AttributeChoice MeshFile::wanted_attributes(bool triangulated) const {
 }
 
 void MeshFile::check_attributes(const AttributeLayout& there) const {
-  if (!attributes_) return;
-  refuse_unknown_names(*attributes_, there);
-  const AttributeChoice named{.names = attribute_choice(*attributes_).names};
+  if (!options_.attributes) return;
+  refuse_unknown_names(*options_.attributes, there);
+  const AttributeChoice named{.names = attribute_choice(*options_.attributes).names};
   const std::vector<std::string> lost =
       formats::lost_attributes(*target_.format, chosen(there, named));
   if (lost.empty()) return;
@@ -91,10 +108,22 @@ BlockSink& MeshFile::open(const MeshStart& start) {
   header_ = start.header;
   if (start.files != nullptr) files_ = start.files;
   if (start.scratch != nullptr) run_scratch_ = start.scratch;
+  if (tiling_ && !options_.foreign_crs) {
+    check_same_crs(start.name, header_.crs, options_.tile_polygons, tiling_->crs(),
+                   options_.tile_polygons);
+  }
   return open_writer();
 }
 
+std::uint64_t MeshFile::own_memory(std::uint64_t limit) const {
+  return tiling_ ? limit / kTileShare : 0;
+}
+
 BlockSink& MeshFile::open_writer() {
+  if (tiling_) {
+    const std::uint64_t memory = own_memory(context().memory());
+    return tiles_.emplace(header_, *tiling_, memory, *run_scratch_).blocks();
+  }
   writer_.reset();
   writer_ = open_mesh_stream_writer(*files_, target_.path, *target_.format, header_, *run_scratch_);
   return *writer_;
@@ -106,23 +135,38 @@ void MeshFile::identify(RunIdentity& identity) const {
 
 /// What is spooled, and streams of blocks that are written from front to back.
 bool MeshFile::goes_on() const {
+  if (tiling_) return false;
   return target_.format->open_block_writer == nullptr || target_.format == &kSpmMesh ||
          target_.format == &kSmaMesh;
 }
 
 BlockSink* MeshFile::begin_again() {
-  if (!can_be_tried(target_.path)) return nullptr;
+  if (!tiling_ && !can_be_tried(target_.path)) return nullptr;
   header_.extent.reset();  // headers of points have told it
   return &open_writer();
 }
 
 void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/) {
   watch.begin("write", simplices_);
-  writer_->finish(report.mesh);
   report.output_format = target_.format->name;
+  if (tiles_) {
+    write_tiles(watch, report);
+    report.write_seconds = watch.end(report.mesh.simplices);
+    return;
+  }
+  writer_->finish(report.mesh);
   report.output_bytes = writer_->bytes_written();
   writer_.reset();
   report.write_seconds = watch.end(report.mesh.simplices);
+}
+
+void MeshFile::write_tiles(RunWatch& watch, Report& report) {
+  MeshTiles::Written written = tiles_->write(*target_.format, context(), watch);
+  report.output_bytes = written.bytes;
+  report.output_files = written.paths.size();
+  report.outside_tiles = tiles_->outside();
+  report.other_files = tiling_->others_than(std::move(written.paths));
+  tiles_.reset();
 }
 
 }  // namespace spillway::stream

@@ -9,6 +9,8 @@
 #include "formats/meshes/common/mesh_format.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/library/meshes/engine_sink.h"
+#include "stream/library/tiling/mesh_tiles.h"
+#include "stream/library/tiling/vector_tiling.h"
 
 namespace spillway::stream {
 
@@ -24,10 +26,11 @@ struct MeshTarget {
 /// that does not stand in parts. Looks at no file.
 MeshTarget mesh_target(const std::string& path, const std::string& format_name, bool parts);
 
-/// A mesh file in the making.
+/// A mesh file in the making, or one for each tile.
 class MeshFile final : public OwnSink<spillway::MeshSink> {
  public:
-  /// Throws Failure(kInvalidArgument) as mesh_target(), and for parts of one process.
+  /// Throws Failure(kInvalidArgument) as mesh_target(), for parts of one process, and for tiles of
+  /// several; and as make_vector_tiling().
   MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context);
 
   [[nodiscard]] bool is_product() const override { return false; }
@@ -46,20 +49,29 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
   void identify(RunIdentity& identity) const override;
   [[nodiscard]] bool goes_on() const override;
-  [[nodiscard]] const MeshTarget* as_mesh_file() const override { return &target_; }
+  /// Tiles are made of the whole mesh.
+  [[nodiscard]] const MeshTarget* as_mesh_file() const override {
+    return tiling_ ? nullptr : &target_;
+  }
+  [[nodiscard]] std::uint64_t own_memory(std::uint64_t limit) const override;
 
  private:
   BlockSink& open(const MeshStart& start) override;
   BlockSink& open_writer();
   [[nodiscard]] AttributeChoice asked_attributes(bool triangulated) const;
 
+  void check_tiles() const;
+  void write_tiles(RunWatch& watch, Report& report);
+
   MeshTarget target_;
-  std::optional<std::vector<std::string>> attributes_;  ///< names, if the caller chooses
+  const MeshFileOptions options_;
+  std::unique_ptr<VectorTiling> tiling_;  ///< null: one file
   std::shared_ptr<ScratchFolder> scratch_;
   FileSystem* files_ = &disk();
   ScratchFolder* run_scratch_;  ///< this one, or that of a run that can go on
   MeshStreamHeader header_;
   std::unique_ptr<MeshStreamWriter> writer_;
+  std::optional<MeshTiles> tiles_;
   const char* simplices_ = "";  ///< what they are called
 };
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <unordered_map>
 #include <utility>
 
 #include "formats/meshes/common/mesh_block.h"
+#include "formats/meshes/common/stream_numbers.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
@@ -18,36 +18,6 @@
 #include "stream/library/points/public_points.h"
 
 namespace spillway::stream {
-namespace {
-
-/// The short numbers of a block's vertices: its own come first, then those that it imports.
-class ShortNumbers {
- public:
-  explicit ShortNumbers(const MeshBlock& block)
-      : first_(block.first_vertex), own_(block.vertices.size()) {}
-
-  std::uint32_t of(std::uint64_t vertex) {
-    if (vertex >= first_ + own_) {
-      throw InvalidArgument(fmt::format("a block of a mesh uses vertex {}, but only {} have come",
-                                        vertex, first_ + own_));
-    }
-    if (vertex >= first_) return static_cast<std::uint32_t>(vertex - first_);
-    const auto [known, is_new] =
-        short_.try_emplace(vertex, static_cast<std::uint32_t>(own_ + imported_.size()));
-    if (is_new) imported_.push_back(vertex);
-    return known->second;
-  }
-
-  std::vector<std::uint64_t> take_imported() { return std::move(imported_); }
-
- private:
-  std::uint64_t first_;
-  std::size_t own_;
-  std::vector<std::uint64_t> imported_;
-  std::unordered_map<std::uint64_t, std::uint32_t> short_;
-};
-
-}  // namespace
 
 MeshHeader public_header(const MeshStreamHeader& header) {
   MeshHeader told;
@@ -230,17 +200,23 @@ void ProgramBlocks::check_further(const MeshStreamBlock& block) const {
 
 MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   check(block);
-  ShortNumbers numbers(block);
+  ShortNumbers numbers(block.first_vertex, block.vertices.size());
+  const std::uint64_t come = block.first_vertex + block.vertices.size();
+  const auto number_of = [&](std::uint64_t vertex) {
+    if (vertex < come) return numbers.of(vertex);
+    throw InvalidArgument(
+        fmt::format("a block of a mesh uses vertex {}, but only {} have come", vertex, come));
+  };
   MeshStreamBlock stream;
   stream.vertices = vertices_of(block);
   stream.input_index = block.input_index;
   stream.attributes = records_of(block.attributes, header_.attributes, 0, block.vertices.size());
   check_further(stream);
   stream.corners.reserve(block.corners.size());
-  for (const std::uint64_t vertex : block.corners) stream.corners.push_back(numbers.of(vertex));
+  for (const std::uint64_t vertex : block.corners) stream.corners.push_back(number_of(vertex));
   stream.finalized.reserve(block.finalized.size());
   for (const std::uint64_t vertex : block.finalized) {
-    stream.finalized.push_back(numbers.of(vertex));
+    stream.finalized.push_back(number_of(vertex));
   }
   stream.imported = numbers.take_imported();
   for (const std::uint64_t vertex : stream.imported) {

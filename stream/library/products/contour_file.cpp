@@ -12,6 +12,7 @@
 #include "formats/vectors/vector_formats.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
+#include "stream/library/products/surface_units.h"
 #include "stream/sinks/contour_shares.h"
 
 namespace spillway::stream {
@@ -20,7 +21,7 @@ namespace {
 /// The part of the memory that is for points of lines that are not complete.
 constexpr std::uint64_t kLineShare = 4;
 /// The part of these that is for pieces of lines that are.
-constexpr std::uint64_t kSquareShare = 4;
+constexpr std::uint64_t kPieceShare = 4;
 
 const VectorFormat& format_of(const std::string& path) {
   if (const VectorFormat* const format = vector_format_of_path(path)) return *format;
@@ -50,6 +51,7 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
       format_(format_of(path)),
       options_(options),
       levels_(levels_of(options)),
+      tiling_(make_vector_tiling(path, options.tile_side, options.tile_polygons)),
       scratch_(context.state().scratch(context)),
       writes_file_(is_first_process(context)) {
   check_max_edge(options_.max_edge);
@@ -66,10 +68,6 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
     throw InvalidArgument(fmt::format("{}: {} holds lines only; bands go to {}", path_,
                                       format_.title, "gpkg, shp or geojson"));
   }
-  if (options_.tile_side != 0) {
-    if (options_.bands) throw InvalidArgument("bands are not cut into tiles: lines are");
-    names_.emplace(path_, options_.tile_side);
-  }
   if (!writes_file_) return;
   check_can_create(path_);
   tell_lost_layers(format_, path_, context);
@@ -77,13 +75,17 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
 
 std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit / kLineShare; }
 
-std::uint64_t ContourFile::memory_of_squares() const {
-  return names_ ? own_memory(context().memory()) / kSquareShare : 0;
+std::uint64_t ContourFile::memory_of_pieces() const {
+  return tiling_ ? own_memory(context().memory()) / kPieceShare : 0;
 }
 
 BlockSink& ContourFile::open(const MeshStart& start) {
   refuse_tetrahedra(start);
   refuse_without_heights(start);
+  if (tiling_ && !options_.foreign_crs) {
+    check_same_crs(start.name, start.header.crs, options_.tile_polygons, tiling_->crs(),
+                   options_.tile_polygons);
+  }
   layer_.path = path_;
   layer_.content = options_.bands ? VectorContent::kBands : VectorContent::kLines;
   layer_.crs = start.header.crs;
@@ -95,7 +97,7 @@ BlockSink& ContourFile::open(const MeshStart& start) {
                .tolerance = {.smooth = options_.smooth.value_or(0),
                              .simplify = options_.simplify.value_or(0)},
                .finds_hull = options_.bands,
-               .memory = own_memory(context().memory()) - memory_of_squares()};
+               .memory = own_memory(context().memory()) - memory_of_pieces()};
   return *begin_again();
 }
 
@@ -103,14 +105,14 @@ BlockSink* ContourFile::begin_again() {
   report_ = {};
   writer_.reset();
   bands_.reset();
-  if (writes_file_ && names_) {
-    squares_.emplace(names_->side(), memory_of_squares(), *scratch_);
+  if (writes_file_ && tiling_) {
+    pieces_.emplace("contours", memory_of_pieces(), *scratch_);
   } else if (writes_file_) {
     file_.emplace(format_, layer_);
-    if (options_.bands) bands_.emplace(levels_, *scratch_);
   } else {
     lines_.emplace(*scratch_);
   }
+  if (writes_file_ && options_.bands) bands_.emplace(levels_, *scratch_);
   HullEdges::Sink hull_sink;
   if (bands_) hull_sink = [this](const HullEdge& edge) { bands_->add_hull_edge(edge); };
   return &writer_.emplace(
@@ -146,8 +148,19 @@ bool ContourFile::keeps_coordinates(const MeshStart& start) const {
 void ContourFile::add(std::span<const Point<2>> points, std::int64_t level) {
   if (lines_) return lines_->add(points, level);
   if (bands_) return bands_->add_line(points, level);
-  if (squares_) return squares_->add(points, level);
+  if (pieces_) return add_pieces(points, level);
   add_line(file_->layer(), points, level);
+}
+
+void ContourFile::add_pieces(std::span<const Point<2>> points, std::int64_t level) {
+  bool is_in_a_tile = false;
+  tiling_->cut(points, [&](std::size_t tile, std::span<const Point<2>> piece) {
+    is_in_a_tile = true;
+    Packer record;
+    LineStore::put(record, piece, level);
+    pieces_->add(tile, record.bytes());
+  });
+  if (!is_in_a_tile) ++report_.outside_tiles;
 }
 
 void ContourFile::add_line(VectorLayer& layer, std::span<const Point<2>> points,
@@ -164,36 +177,69 @@ void ContourFile::add_line(VectorLayer& layer, std::span<const Point<2>> points,
 std::uint64_t ContourFile::write_tiles() {
   std::uint64_t bytes = 0;
   std::vector<std::string> paths;
-  for (const GridSquare square : squares_->squares()) {
+  for (const std::size_t tile : pieces_->tiles()) {
     VectorLayerOptions layer = layer_;
-    layer.path = paths.emplace_back(names_->path(square));
+    layer.path = paths.emplace_back(tiling_->path(tile));
     VectorFile file(format_, std::move(layer));
-    squares_->for_each(square, [&](std::span<const Point<2>> points, std::int64_t level) {
-      add_line(file.layer(), points, level);
-    });
+    RecordsByTile::Reader records(*pieces_, tile);
+    for (std::vector<std::byte> some; records.next(some);) write_pieces(file.layer(), some);
     file.finish();
     bytes += file.bytes();
   }
   report_.files = paths.size();
-  report_.other_files = names_->others_than(paths);
-  report_.spilled_bytes += squares_->spilled_bytes();
+  report_.other_files = tiling_->others_than(paths);
+  report_.spilled_bytes += pieces_->spilled_bytes();
   return bytes;
 }
 
-/// What has no level below or above ends at the least or the greatest height of the terrain.
 void ContourFile::add_bands() {
-  std::vector<std::span<const Point<2>>> rings;
+  PolygonRings rings;
   bands_->finish([&](const PolygonWithHoles& polygon, std::int64_t band) {
     rings.assign({polygon.outer});
     rings.insert(rings.end(), polygon.holes.begin(), polygon.holes.end());
-    for (const auto& ring : rings) report_.points += ring.size();
-    file_->layer().add_band(
-        {.rings = rings,
-         .least = levels_.has(band) ? levels_.height(band) : report_.lowest,
-         .greatest = levels_.has(band + 1) ? levels_.height(band + 1) : report_.highest});
-    ++report_.polygons;
+    if (pieces_) return add_parts(rings, band);
+    add_band(file_->layer(), rings, band);
   });
   report_.spilled_bytes += bands_->stored_bytes();
+}
+
+void ContourFile::add_parts(const PolygonRings& polygon, std::int64_t band) {
+  bool is_in_a_tile = false;
+  tiling_->cut_polygon(polygon, [&](std::size_t tile, const PolygonRings& part) {
+    is_in_a_tile = true;
+    Packer record;
+    record.put(band);
+    record.put(part.size());
+    for (const auto& ring : part) record.put_list(ring);
+    pieces_->add(tile, record.bytes());
+  });
+  if (!is_in_a_tile) ++report_.outside_tiles;
+}
+
+/// What has no level below or above ends at the least or the greatest height of the terrain.
+void ContourFile::add_band(VectorLayer& layer, const PolygonRings& polygon, std::int64_t band) {
+  const std::vector<std::span<const Point<2>>> rings(polygon.begin(), polygon.end());
+  for (const auto& ring : rings) report_.points += ring.size();
+  layer.add_band({.rings = rings,
+                  .least = levels_.has(band) ? levels_.height(band) : report_.lowest,
+                  .greatest = levels_.has(band + 1) ? levels_.height(band + 1) : report_.highest});
+  ++report_.polygons;
+}
+
+/// Writes what is in records of a tile.
+void ContourFile::write_pieces(VectorLayer& layer, std::span<const std::byte> records) {
+  if (!bands_) {
+    LineStore::for_each(records, [&](std::span<const Point<2>> points, std::int64_t level) {
+      add_line(layer, points, level);
+    });
+    return;
+  }
+  for (Unpacker parts(records); !parts.empty();) {
+    const auto band = parts.take<std::int64_t>();
+    PolygonRings rings(parts.take<std::size_t>());
+    for (auto& ring : rings) ring = parts.take_list<std::vector<Point<2>>>();
+    add_band(layer, rings, band);
+  }
 }
 
 void ContourFile::number_share(std::uint64_t first_vertex) { writer_->number_from(first_vertex); }
@@ -226,7 +272,7 @@ void ContourFile::finalize(RunWatch& watch, Report& report, OtherShares& others)
   watch.begin("write", bands_ ? "polygons" : "lines");
   if (bands_) add_bands();
   report.output_format = format_.name;
-  if (squares_) {
+  if (pieces_) {
     report.output_bytes = write_tiles();
   } else {
     file_->finish();

@@ -12,11 +12,11 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/vectors/vector_file.h"
 #include "stream/library/meshes/engine_sink.h"
-#include "stream/library/products/square_names.h"
+#include "stream/library/tiling/records_by_tile.h"
+#include "stream/library/tiling/vector_tiling.h"
 #include "stream/sinks/band_store.h"
 #include "stream/sinks/contour_writer.h"
 #include "stream/sinks/line_store.h"
-#include "stream/sinks/lines_by_square.h"
 
 namespace spillway::stream {
 
@@ -46,23 +46,27 @@ class ContourFile final : public OwnSink<ContourSink> {
   void add(std::span<const Point<2>> points, std::int64_t level);
 
   void add_line(VectorLayer& layer, std::span<const Point<2>> points, std::int64_t level);
-  [[nodiscard]] std::uint64_t memory_of_squares() const;
+  void add_pieces(std::span<const Point<2>> points, std::int64_t level);
+  [[nodiscard]] std::uint64_t memory_of_pieces() const;
   void add_bands();
+  void add_parts(const PolygonRings& polygon, std::int64_t band);
+  void add_band(VectorLayer& layer, const PolygonRings& polygon, std::int64_t band);
+  void write_pieces(VectorLayer& layer, std::span<const std::byte> records);
   [[nodiscard]] std::uint64_t write_tiles();
 
   std::string path_;
   const VectorFormat& format_;
   ContourOptions options_;
   Levels levels_;
+  std::unique_ptr<VectorTiling> tiling_;  ///< null: one file
   std::shared_ptr<ScratchFolder> scratch_;
   VectorLayerOptions layer_;
   ContourSinkOptions contours_;
-  bool writes_file_;                      ///< or another process does
-  std::optional<VectorFile> file_;        ///< of who writes it
-  std::optional<SquareNames> names_;      ///< of tiles
-  std::optional<LinesBySquare> squares_;  ///< of who writes tiles
-  std::optional<LineStore> lines_;        ///< of the others
-  std::optional<BandStore> bands_;        ///< of who writes bands
+  bool writes_file_;                     ///< or another process does
+  std::optional<VectorFile> file_;       ///< of who writes it
+  std::optional<RecordsByTile> pieces_;  ///< of who writes tiles
+  std::optional<LineStore> lines_;       ///< of the others
+  std::optional<BandStore> bands_;       ///< of who writes bands
   std::optional<ContourWriter> writer_;
   std::vector<WorldPoint> line_;
   ContourReport report_;

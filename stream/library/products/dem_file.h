@@ -13,7 +13,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/gdal/raster.h"
 #include "stream/library/meshes/engine_sink.h"
-#include "stream/library/products/raster_tiling.h"
+#include "stream/library/tiling/raster_tiling.h"
 #include "stream/sinks/dem.h"
 #include "stream/sinks/dem_writer.h"
 

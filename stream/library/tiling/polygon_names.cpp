@@ -1,4 +1,4 @@
-#include "stream/library/products/polygon_tiling.h"
+#include "stream/library/tiling/polygon_names.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "formats/gdal/gdal.h"
@@ -53,12 +52,14 @@ std::string name_of(const std::string& pattern, const PolygonFeature& polygon, s
 
 }  // namespace
 
-PolygonTiling::PolygonTiling(const std::string& pattern, const std::string& polygons)
-    : layer_(gdal().read_polygons(polygons)) {
+NamedPolygons read_named_polygons(const std::string& pattern, const std::string& polygons) {
+  PolygonLayer layer = gdal().read_polygons(polygons);
+  NamedPolygons named;
+  named.crs = std::move(layer.crs);
   const std::filesystem::path path(pattern);
   std::map<std::string, std::size_t> numbers;
-  for (const PolygonFeature& polygon : layer_.polygons) {
-    const std::size_t number = paths_.size() + 1;
+  for (PolygonFeature& polygon : layer.polygons) {
+    const std::size_t number = named.paths.size() + 1;
     const std::string name = name_of(path.filename(), polygon, number, polygons);
     const auto [first, is_new] = numbers.emplace(name, number);
     if (!is_new) {
@@ -66,27 +67,10 @@ PolygonTiling::PolygonTiling(const std::string& pattern, const std::string& poly
                                            "that tells them apart",
                                            first->second, number, name));
     }
-    paths_.push_back(path.parent_path() / name);
+    named.paths.push_back(path.parent_path() / name);
+    named.rings.push_back(std::move(polygon.rings));
   }
-  for (PolygonFeature& polygon : layer_.polygons) polygon.fields.clear();
-}
-
-std::vector<RasterTile> PolygonTiling::tiles(const PixelGrid& raster) const {
-  std::vector<RasterTile> tiles;
-  for (std::size_t p = 0; p < layer_.polygons.size(); ++p) {
-    auto outline = std::make_shared<PolygonPixels>(layer_.polygons[p].rings, raster);
-    if (outline->window().empty()) continue;
-    const PixelWindow window = outline->window();
-    tiles.push_back({window, paths_[p], std::move(outline)});
-  }
-  if (tiles.empty()) {
-    throw InvalidArgument(fmt::format(
-        "none of the polygons has a pixel of the raster, which reaches from {:.15g}, {:.15g} to "
-        "{:.15g}, {:.15g}",
-        raster.west, raster.north - raster.rows * raster.resolution,
-        raster.west + raster.columns * raster.resolution, raster.north));
-  }
-  return tiles;
+  return named;
 }
 
 }  // namespace spillway::stream

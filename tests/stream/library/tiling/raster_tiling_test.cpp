@@ -1,6 +1,6 @@
 // How rasters are cut into files: where they lie, and what these are called.
 
-#include "stream/library/products/raster_tiling.h"
+#include "stream/library/tiling/raster_tiling.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "src/error.h"
-#include "stream/library/products/square_tiling.h"
+#include "stream/library/tiling/square_tiling.h"
 
 namespace spillway::test {
 namespace {

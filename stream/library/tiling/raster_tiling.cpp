@@ -1,4 +1,4 @@
-#include "stream/library/products/raster_tiling.h"
+#include "stream/library/tiling/raster_tiling.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "src/error.h"
-#include "stream/library/products/polygon_tiling.h"
-#include "stream/library/products/square_tiling.h"
+#include "stream/library/tiling/polygon_tiling.h"
+#include "stream/library/tiling/square_tiling.h"
 
 namespace spillway::stream {
 
@@ -27,9 +27,7 @@ std::string vrt_path_of(const std::string& pattern) {
 }
 
 std::unique_ptr<RasterTiling> make_tiling(const std::string& pattern, const DemOptions& options) {
-  if (options.tile_side != 0 && !options.tile_polygons.empty()) {
-    throw InvalidArgument("tiles are squares or polygons, not both");
-  }
+  refuse_two_kinds(options.tile_side, options.tile_polygons);
   if (!options.vrt.empty() && std::filesystem::path(options.vrt).extension() != ".vrt") {
     throw InvalidArgument(fmt::format("{}: what puts tiles together is a VRT: give it a name that "
                                       "ends in .vrt",

@@ -7,6 +7,9 @@
 
 namespace spillway::stream {
 
+/// Throws InvalidArgument for tiles that are squares of a side and polygons of a file.
+void refuse_two_kinds(double side, const std::string& polygons);
+
 /// The names of files for squares of a side: "{x}" and "{y}" in a pattern become the south-western
 /// corner of each.
 class SquareNames {

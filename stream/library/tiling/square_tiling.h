@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "src/geometry/pixel_grid.h"
-#include "stream/library/products/raster_tiling.h"
-#include "stream/library/products/square_names.h"
+#include "stream/library/tiling/raster_tiling.h"
+#include "stream/library/tiling/square_names.h"
 
 namespace spillway::stream {
 

@@ -1,4 +1,4 @@
-#include "stream/library/products/square_tiling.h"
+#include "stream/library/tiling/square_tiling.h"
 
 #include <fmt/format.h>
 

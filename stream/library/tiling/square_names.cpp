@@ -1,4 +1,4 @@
-#include "stream/library/products/square_names.h"
+#include "stream/library/tiling/square_names.h"
 
 #include <fmt/format.h>
 
@@ -27,6 +27,11 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
 }
 
 }  // namespace
+
+void refuse_two_kinds(double side, const std::string& polygons) {
+  if (side == 0 || polygons.empty()) return;
+  throw InvalidArgument("tiles are squares or polygons, not both");
+}
 
 SquareNames::SquareNames(std::string pattern, double side)
     : pattern_(std::move(pattern)), side_(side) {

@@ -1,0 +1,48 @@
+#include "stream/library/tiling/mesh_tiles.h"
+
+#include "formats/disk/file_system.h"
+#include "formats/meshes/mesh_stream_writer.h"
+#include "stream/checker/checker.h"
+#include "stream/library/meshes/mesh_passage.h"
+
+namespace spillway::stream {
+
+MeshTiles::MeshTiles(const MeshStreamHeader& header, VectorTiling& tiling, std::uint64_t memory,
+                     ScratchFolder& scratch)
+    : header_(header),
+      tiling_(tiling),
+      scratch_(scratch),
+      records_("tiles", memory, scratch),
+      divider_(header, tiling, records_) {}
+
+std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
+                                    const MeshFormat& format, const Context& context,
+                                    RunWatch& watch) {
+  const TileCounts& counts = divider_.counts(tile);
+  MeshTotals totals = TileMesh(header_, counts, records_, tile).totals();
+  if (format.has_totals) {
+    TileMesh mesh(header_, counts, records_, tile);
+    CheckerOptions how;
+    how.threads = context.threads();
+    const CheckReport counted = count_mesh_stream(mesh, how);
+    totals.canonical_hash = counted.canonical_hash;
+    totals.hull_facets = counted.hull_facets;
+  }
+  TileMesh mesh(header_, counts, records_, tile);
+  const auto writer = open_mesh_stream_writer(disk(), path, format, mesh.header(), scratch_);
+  pass_mesh(mesh, header_.attributes, *writer, watch, context.threads());
+  writer->finish(totals);
+  return writer->bytes_written();
+}
+
+MeshTiles::Written MeshTiles::write(const MeshFormat& format, const Context& context,
+                                    RunWatch& watch) {
+  Written written;
+  for (const std::size_t tile : records_.tiles()) {
+    const std::string& path = written.paths.emplace_back(tiling_.path(tile));
+    written.bytes += write_tile(tile, path, format, context, watch);
+  }
+  return written;
+}
+
+}  // namespace spillway::stream

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <spillway/context.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/disk/scratch_folder.h"
+#include "formats/meshes/common/mesh_format.h"
+#include "stream/library/context/run_watch.h"
+#include "stream/library/tiling/mesh_divider.h"
+#include "stream/library/tiling/records_by_tile.h"
+#include "stream/library/tiling/vector_tiling.h"
+
+namespace spillway::stream {
+
+/// A mesh that becomes a file for each tile, when all of it has come.
+class MeshTiles {
+ public:
+  /// `memory` is for what waits; `scratch` must outlive it.
+  MeshTiles(const MeshStreamHeader& header, VectorTiling& tiling, std::uint64_t memory,
+            ScratchFolder& scratch);
+
+  [[nodiscard]] BlockSink& blocks() { return divider_; }
+
+  struct Written {
+    std::uint64_t bytes = 0;
+    std::vector<std::string> paths{};
+  };
+  /// Writes them all. Files that are complete stay if a later one fails.
+  Written write(const MeshFormat& format, const Context& context, RunWatch& watch);
+
+  /// Simplices that are in no tile.
+  [[nodiscard]] std::uint64_t outside() const { return divider_.outside(); }
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return records_.spilled_bytes(); }
+
+ private:
+  std::uint64_t write_tile(std::size_t tile, const std::string& path, const MeshFormat& format,
+                           const Context& context, RunWatch& watch);
+
+  const MeshStreamHeader header_;
+  VectorTiling& tiling_;
+  ScratchFolder& scratch_;
+  RecordsByTile records_;
+  MeshDivider divider_;
+};
+
+}  // namespace spillway::stream
