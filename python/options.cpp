@@ -100,7 +100,10 @@ void bind_point_options(py::module_& module) {
   py::class_<MeshFileOptions>(module, "MeshFileOptions")
       .def(py::init())
       .def_readwrite("format", &MeshFileOptions::format)
-      .def_readwrite("attributes", &MeshFileOptions::attributes);
+      .def_readwrite("attributes", &MeshFileOptions::attributes)
+      .def_readwrite("tile_side", &MeshFileOptions::tile_side)
+      .def_readwrite("tile_polygons", &MeshFileOptions::tile_polygons)
+      .def_readwrite("foreign_crs", &MeshFileOptions::foreign_crs);
 
   py::class_<MeshOptions>(module, "MeshOptions")
       .def(py::init())
@@ -216,7 +219,8 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("base", &ContourOptions::base)
       .def_readwrite("levels", &ContourOptions::levels)
       .def_readwrite("foreign_crs", &ContourOptions::foreign_crs)
-      .def_readwrite("tiles", &ContourOptions::tile_side)
+      .def_readwrite("tile_side", &ContourOptions::tile_side)
+      .def_readwrite("tile_polygons", &ContourOptions::tile_polygons)
       .def_readwrite("max_edge", &ContourOptions::max_edge)
       .def_readwrite("index", &ContourOptions::index)
       .def_readwrite("min_length", &ContourOptions::min_length)

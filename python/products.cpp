@@ -81,6 +81,7 @@ py::dict contours(Run& run, const MeshOrigin& origin, const std::string& output,
   statistics["line_points"] = lines.points;
   statistics["lowest"] = lines.lowest;
   statistics["highest"] = lines.highest;
+  statistics["outside_tiles"] = lines.outside_tiles;
   statistics["files"] = lines.files;
   statistics["other_files"] = lines.other_files;
   statistics["spilled_line_bytes"] = lines.spilled_bytes;

@@ -18,6 +18,7 @@ from ._inputs import (
     is_mesh,
     points_origin,
 )
+from ._messages import warn_of_tiles
 from ._options import (
     CheckOptions,
     ConvertOptions,
@@ -56,6 +57,7 @@ def triangulate(
     id: bool = False,
     attributes: str | Sequence[str] | None = None,
     output_format: str | None = None,
+    tiles: float | PathLike | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> RunReport:
     """Triangulate points of any number, through bounded memory, to a file.
@@ -83,6 +85,10 @@ def triangulate(
         it is all but x, y and z.
     output_format : str, optional
         The format, where the name does not tell, as ``"ply"`` or ``"spm"``.
+    tiles : float or path, optional
+        A file for each square of this side, with ``{x}`` and ``{y}`` in `output`, or for each
+        polygon of this vector file, with its fields in braces. A simplex goes whole to where its
+        centroid lies.
     {options}
 
     Returns
@@ -109,9 +115,8 @@ def triangulate(
     carried = attributes_of(inputs, "inputs")
     origin = points_origin(source, as_dimension(dim, source), options, id, carried)
     path = as_path(output, "output")
-    how = mesh_file_options(output_format, attributes)
-    run = make_run(options)
-    return RunReport(**_spillway.mesh(run, origin, path, how))
+    how = mesh_file_options(output_format, attributes, tiles, options)
+    return warn_of_tiles(RunReport(**_spillway.mesh(make_run(options), origin, path, how)))
 
 
 @takes(ConvertOptions)
@@ -129,6 +134,7 @@ def convert(
     sorted: bool = False,
     cell_points: int | None = None,
     dim: int | None = None,
+    tiles: float | PathLike | None = None,
     **options: Unpack[ConvertOptions],
 ) -> ConvertReport | RunReport:
     """Write points or a mesh in another format.
@@ -163,6 +169,8 @@ def convert(
         Most points of a cell.
     dim : {2, 3}, optional
         Cells divide the plane (by default), or space.
+    tiles : float or path, optional
+        Of a mesh, as `triangulate` has them.
     {options}
 
     Returns
@@ -189,10 +197,11 @@ def convert(
     if is_mesh(run, source, mesh_format, options):
         check_mesh_options(options)
         refuse({**of_points, **cells}, [*of_points, *cells], "on a mesh")
-        written = mesh_file_options(output_format, attributes)
+        written = mesh_file_options(output_format, attributes, tiles, options)
         assert isinstance(source, list)
         origin = _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
-        return RunReport(**_spillway.mesh(run, origin, path, written))
+        return warn_of_tiles(RunReport(**_spillway.mesh(run, origin, path, written)))
+    refuse({"tiles": tiles}, ["tiles"], "on points: a mesh is cut into tiles")
     check_array(source, options)
     how = _spillway.PointFileOptions()
     put_all(how, {"output_format": output_format, "las_version": las_version})

@@ -5,8 +5,14 @@ from __future__ import annotations
 import logging
 import sys
 import warnings
+from typing import TYPE_CHECKING, TypeVar
 
 from . import errors
+
+if TYPE_CHECKING:
+    from ._reports import RunReport
+
+_Report = TypeVar("_Report", bound="RunReport")
 
 _log = logging.getLogger("spillway")
 
@@ -17,6 +23,19 @@ def tell(is_warning: bool, text: str) -> None:
         warnings.warn(text, errors.Warning, stacklevel=_levels_to_the_caller())
     else:
         _log.info("%s", text)
+
+
+def warn_of_tiles(report: _Report) -> _Report:
+    """Warn of what lies in no tile, and of files that are called like tiles; return the report."""
+    if report.outside_tiles > 0:
+        tell(True, f"{report.outside_tiles} parts are in none of the tiles, and in no file")
+    if report.other_files:
+        tell(
+            True,
+            f"{', '.join(report.other_files)}: called like tiles of this run, which has not "
+            "written them",
+        )
+    return report
 
 
 def is_explained() -> bool:

@@ -575,14 +575,30 @@ def mesh_options(options: Mapping[str, Any], mesh_format: str | None) -> _spillw
     return made
 
 
+def put_tiles(
+    target: _spillway.DemOptions | _spillway.ContourOptions | _spillway.MeshFileOptions,
+    tiles: float | PathLike | None,
+) -> None:
+    """Put what an output is cut into: squares of a side, or polygons of a file."""
+    if isinstance(tiles, (str, bytes, os.PathLike)):
+        target.tile_polygons = as_path(tiles, "tiles")
+    elif tiles is not None:
+        put(target, "tiles", tiles, lambda made, side: setattr(made, "tile_side", side))
+
+
 def mesh_file_options(
-    output_format: str | None, attributes: str | Sequence[str] | None
+    output_format: str | None,
+    attributes: str | Sequence[str] | None,
+    tiles: float | PathLike | None,
+    options: Mapping[str, Any],
 ) -> _spillway.MeshFileOptions:
     """How a file of a mesh is written."""
     made = _spillway.MeshFileOptions()
     made.format = as_word(output_format, "output_format")
     if attributes is not None:
         made.attributes = as_names(attributes, "attributes")
+    put_tiles(made, tiles)
+    made.foreign_crs = bool(options.get("force_crs"))
     return made
 
 

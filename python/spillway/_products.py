@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Sequence, overload
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from . import _spillway
 from ._inputs import as_inputs, mesh_origin
-from ._messages import tell
+from ._messages import tell, warn_of_tiles
 from ._options import (
     DemOptions,
     PathLike,
@@ -21,6 +20,7 @@ from ._options import (
     put,
     put_all,
     put_classes,
+    put_tiles,
     refuse,
     takes,
     triangulate_options,
@@ -247,7 +247,7 @@ def dem(
         _put_tiles(how, tiles, vrt, align, bool(options.get("force_crs")))
         report = RasterReport(**_spillway.dem(run, origin, as_path(output, "output"), how))
         _warn_of_empty(report)
-        _warn_of_other_files(report)
+        warn_of_tiles(report)
         return report
     of_files |= {"tiles": tiles, "vrt": vrt}
     refuse(of_files, of_files, "without an output")
@@ -278,7 +278,7 @@ def contour(
     smooth: float | None = None,
     simplify: float | None = None,
     bands: bool = False,
-    tiles: float | None = None,
+    tiles: float | PathLike | None = None,
     mesh_format: str | None = None,
     **options: Unpack[TriangulateOptions],
 ) -> ContourReport:
@@ -308,10 +308,11 @@ def contour(
     simplify : float, optional
         Leave out points of lines, moving these by at most this, likewise.
     bands : bool, optional
-        Polygons of what lies between neighbouring levels, instead of lines. Not with `index`,
-        `min_length` and `tiles`.
-    tiles : float, optional
-        Cut lines into files, squares of this side with ``{x}`` and ``{y}`` in their names.
+        Polygons of what lies between neighbouring levels, instead of lines. Not with `index`
+        and `min_length`.
+    tiles : float or path, optional
+        Cut lines, or bands, into files: squares of this side with ``{x}`` and ``{y}`` in their
+        names, or the polygons of this vector file with its fields in braces.
     mesh_format : str, optional
         Format of a mesh, where neither first bytes nor name tell.
     {options}
@@ -336,9 +337,10 @@ def contour(
         raise InvalidArgumentError("interval, the height between two lines, is missing (or levels)")
     put_all(how, {"interval": interval, "base": base, "levels": levels})
     put_all(how, {"index": index, "min_length": min_length})
-    put_all(how, {"smooth": smooth, "simplify": simplify, "tiles": tiles})
+    put_all(how, {"smooth": smooth, "simplify": simplify})
+    put_tiles(how, tiles)
     if bands:
-        of_lines = {"index": index, "min_length": min_length, "tiles": tiles}
+        of_lines = {"index": index, "min_length": min_length}
         refuse(of_lines, of_lines, "with bands, which are no lines")
     how.bands = bands
     put_all(how, {"max_edge": options.get("max_edge")})
@@ -346,7 +348,7 @@ def contour(
     run = make_run(options)
     origin = mesh_origin(run, inputs, 2, mesh_format, options)
     report = ContourReport(**_spillway.contours(run, origin, as_path(output, "output"), how))
-    _warn_of_other_files(report)
+    warn_of_tiles(report)
     if report.lines == 0 and report.short_lines > 0:
         tell(True, f"no lines: {report.short_lines} lines left out: shorter than min_length")
     elif report.lines == 0 and not bands:
@@ -529,21 +531,11 @@ def _put_tiles(
         return
     if vrt is not None:
         how.vrt = as_path(vrt, "vrt")
-    if isinstance(tiles, (str, bytes, os.PathLike)):
-        how.tile_polygons = as_path(tiles, "tiles")
+    put_tiles(how, tiles)
+    if how.tile_polygons:
         how.foreign_crs = force_crs
-        return
-    refuse({"align": align}, ["align"], "with tiles that are squares, which align pixels")
-    put(how, "tiles", tiles, lambda target, side: setattr(target, "tile_side", side))
-
-
-def _warn_of_other_files(report: RasterReport | ContourReport) -> None:
-    if report.other_files:
-        tell(
-            True,
-            f"{', '.join(report.other_files)}: called like tiles of this run, which has not "
-            "written them",
-        )
+    else:
+        refuse({"align": align}, ["align"], "with tiles that are squares, which align pixels")
 
 
 def _warn_of_empty(report: RasterReport) -> None:

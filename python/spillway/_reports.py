@@ -69,6 +69,9 @@ class RunReport(_Report):
     lost: list[str]
     output_format: str
     output_bytes: int
+    output_files: int
+    outside_tiles: int
+    other_files: list[str]
     threads: int
     tiles: int
     tile_capacity: int
@@ -110,7 +113,6 @@ class RasterReport(RunReport):
     files_during_run: int
     empty_tiles: int
     vrt: str
-    other_files: list[str]
     closed_tiles: int
     spilled_pixel_bytes: int
     points_in_pixels: int
@@ -172,8 +174,8 @@ class VolumeReport(RunReport):
 class ContourReport(RunReport):
     """How many lines there are, or polygons, of how many points, how many lines were left out for
     their length, the least and the greatest height of the terrain, and the run that made them. Of
-    tiles, `files` tells how many have lines, and `other_files` what is called like them and is of
-    another run."""
+    tiles, `files` tells how many have some, `outside_tiles` how many lines or polygons are in none,
+    and `other_files` what is called like them and is of another run."""
 
     lines: int
     short_lines: int
@@ -182,7 +184,6 @@ class ContourReport(RunReport):
     lowest: float
     highest: float
     files: int
-    other_files: list[str]
     spilled_line_bytes: int
 
     def _summary(self) -> str:

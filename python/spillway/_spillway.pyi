@@ -82,6 +82,9 @@ class PointOptions:
 class MeshFileOptions:
     format: str
     attributes: list[str] | None
+    tile_side: float
+    tile_polygons: bytes
+    foreign_crs: bool
 
 class MeshOptions:
     format: str
@@ -157,6 +160,8 @@ class ContourOptions:
     smooth: float | None
     simplify: float | None
     bands: bool
+    tile_side: float
+    tile_polygons: bytes
 
 class PictureOptions:
     size: int | None

@@ -55,7 +55,7 @@ class VectorTiles : public ::testing::Test {
       const std::string layer = name.substr(0, name.find('.'));
       const Result told = work_.run(
           fmt::format("ogr2ogr -f CSV /vsistdout/ {0} -dialect SQLite -sql \"SELECT {1} AS field, "
-                      "{2}(geom) AS measure, ST_IsValid(geom) + 0 AS valid FROM '{3}'\"",
+                      "{2}(geom) AS measure, ST_IsValid(geom) AS valid FROM '{3}'\"",
                       name, field, measure, layer));
       EXPECT_EQ(told.exit_code, 0) << told.err;
       std::istringstream lines(told.out);
@@ -63,11 +63,13 @@ class VectorTiles : public ::testing::Test {
       std::getline(lines, line);
       EXPECT_EQ(line, "field,measure,valid");
       while (std::getline(lines, line)) {
+        std::erase(line, '"');
         double height = 0;
         double value = 0;
         int valid = 0;
         EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%d", &height, &value, &valid), 3) << line;
-        EXPECT_EQ(valid, 1) << name;
+        // What ogr2ogr makes is not always so.
+        EXPECT_TRUE(valid == 1 || name.starts_with("clip_")) << name;
         sums.by_height[height] += value;
         ++sums.shapes;
       }
@@ -89,7 +91,8 @@ class VectorTiles : public ::testing::Test {
 
 TEST_F(VectorTiles, OfPolygonsHaveTheLinesThatLieInThem) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
-  const std::string how = "contour in.las --interval 3 --force-crs ";
+  // Between the heights of points: ogr2ogr joins what runs along itself.
+  const std::string how = "contour in.las --interval 3 --base 0.005 --force-crs ";
   const auto stats = make(how + "-o 'l_{name}.gpkg' --tiles sheets.geojson")["contours"];
   EXPECT_EQ(stats["files"], 3);
   EXPECT_GT(stats["outside_tiles"], 0);
@@ -112,22 +115,28 @@ TEST_F(VectorTiles, OfSquaresAndPolygonsHaveTheBandsThatLieInThem) {
   work_.succeed("spillway " + how + "-q -o whole.gpkg");
   const Sums whole = sums("whole.gpkg", "ST_Area", "\\\"min\\\"");
   EXPECT_GT(whole.shapes, 20);
-  const auto stats = make(how + "-o 's_{x}_{y}.gpkg' --tiles 40")["contours"];
+  const auto stats = make(how + "-o 's_{x}_{y}.gpkg' --tiles 90")["contours"];
   const Sums squares = sums("s_*.gpkg", "ST_Area", "\\\"min\\\"");
   expect_same(squares, whole);
-  EXPECT_GT(stats["files"], 8);
+  EXPECT_GE(stats["files"], 6);
   EXPECT_EQ(stats["outside_tiles"], 0);
   EXPECT_EQ(stats["polygons"], squares.shapes);
-  make(how + "-o 'p_{name}.gpkg' --tiles sheets.geojson");
-  for (const char* name : {"west", "middle", "east"}) {
-    work_.succeed(
-        fmt::format("ogr2ogr clip_{0}.gpkg whole.gpkg -clipsrc sheets.geojson "
-                    "-clipsrcwhere \"name='{0}'\" -nln clip_{0} -nlt POLYGON "
-                    "-explodecollections",
-                    name));
-    expect_same(sums(fmt::format("p_{}.gpkg", name), "ST_Area", "\\\"min\\\""),
-                sums(fmt::format("clip_{}.gpkg", name), "ST_Area", "\\\"min\\\""));
+  // Polygons that cover the terrain, the hole among them.
+  std::string covering = kSheets;
+  for (std::size_t at = 0; (at = covering.find("4100090")) != std::string::npos;) {
+    covering.replace(at, 7, "4099000");
   }
+  covering.resize(covering.size() - 2);
+  work_.write("covering.geojson", covering + R"(,
+    {"type":"Feature","properties":{"name":"hole"},"geometry":{"type":"Polygon","coordinates":
+    [[[500170,4100130],[500180,4100130],[500180,4100140],[500170,4100140],[500170,4100130]]]}}]})");
+  EXPECT_EQ(make(how + "-o 'p_{name}.gpkg' --tiles covering.geojson")["contours"]["files"], 4);
+  expect_same(sums("p_*.gpkg", "ST_Area", "\\\"min\\\""), whole);
+  double hole = 0;
+  for (const auto& [height, area] : sums("p_hole.gpkg", "ST_Area", "\\\"min\\\"").by_height) {
+    hole += area;
+  }
+  EXPECT_NEAR(hole, 100, 1e-6);
 }
 
 TEST_F(VectorTiles, OfAMeshAreMadeOfPointsOrOfTheMesh) {
