@@ -376,7 +376,7 @@ class Options(unittest.TestCase):
             for call in (spillway.blocks, spillway.triangulate)
         )
         self.assertEqual(found - expected, {"mesh_format"})
-        self.assertEqual(expected - found, {"output", "output_format"})
+        self.assertEqual(expected - found, {"output", "output_format", "tiles"})
 
 
 class Errors(InFolder):

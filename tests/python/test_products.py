@@ -73,6 +73,33 @@ class Dem(InFolder):
         with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "without an output"):
             spillway.dem("hills.las", resolution=1, tiles=100)
 
+    def test_tiles_of_meshes_and_contours_are_those_of_the_command(self):
+        for folder in ("a", "b", "c"):
+            os.makedirs(folder)
+        command("triangulate", "hills.las", "-o", "a/t_{x}_{y}.ply", "--tiles", 100)
+        report = spillway.triangulate("hills.las", "b/t_{x}_{y}.ply", tiles=100)
+        self.assertEqual(report.output_files, len(os.listdir("b")))
+        spillway.triangulate("hills.las", "hills.spm")
+        spillway.convert("hills.spm", "c/t_{x}_{y}.ply", tiles=100)
+        self.assertEqual(os.listdir("c"), os.listdir("b"))
+        command("contour", "hills.las", "-o", "a/{x}_{y}.shp", "--interval", 5, "--bands", "--tiles", 200)
+        report = spillway.contour("hills.las", "b/{x}_{y}.shp", interval=5, bands=True, tiles=200)
+        self.assertGreater(report.files, 1)
+        self.assertEqual(report.outside_tiles, 0)
+        self.assertEqual(sorted(os.listdir("a")), sorted(os.listdir("b")))
+        for name in os.listdir("a"):
+            if not name.endswith(".dbf"):  # which has a date
+                self.assertEqual(bytes_of(f"a/{name}"), bytes_of(f"b/{name}"), name)
+        with open("sheet.csv", "w", encoding="utf8") as sheet:
+            sheet.write('n,WKT\n7,"POLYGON ((0 0,1 0,1 1,0 1,0 0))"\n')
+        with self.assertWarnsRegex(spillway.errors.Warning, "none of the tiles"):
+            report = spillway.triangulate(
+                "hills.las", "s_{n}.ply", tiles="sheet.csv", force_crs=True
+            )
+        self.assertEqual(report.outside_tiles, report.simplices)
+        with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "a mesh is cut"):
+            spillway.convert("hills.las", "{x}_{y}.las", tiles=100)
+
     def test_an_array_has_the_pixels_of_the_file(self):
         gdal = self.gdal()
         command("triangulate", "hills.las", "-o", "mesh.spm")
