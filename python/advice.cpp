@@ -44,6 +44,8 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kUnknownCrs:
       return "; name their coordinate system with crs, or write them as they are with "
              "force_crs=True";
+    case Remedy::kGivenCrs:
+      return "; name it with crs";
     case Remedy::kWrongCrs:
       return "; name the right coordinate system with crs and force_crs=True";
     case Remedy::kGroundScale:

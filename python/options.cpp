@@ -81,6 +81,12 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("resolution", &PointOptions::resolution)
       .def_readwrite("crs", &PointOptions::crs)
       .def_readwrite("foreign_crs", &PointOptions::foreign_crs)
+      .def_readwrite("clip", &PointOptions::clip)
+      .def_readwrite("clip_buffer", &PointOptions::clip_buffer)
+      .def_readwrite("clip_outside", &PointOptions::clip_outside)
+      .def_readwrite("z_range", &PointOptions::z_range)
+      .def_readwrite("to_crs", &PointOptions::to_crs)
+      .def_readwrite("z_multiplier", &PointOptions::z_multiplier)
       .def_readwrite("metadata", &PointOptions::metadata)
       .def_readwrite("attributes", &PointOptions::attributes)
       .def("set_returns",

@@ -82,7 +82,7 @@ py::dict statistics_of(const PointCounts& counts) {
   return py::dict("read"_a = counts.read, "invalid"_a = counts.invalid,
                   "withheld"_a = counts.withheld, "lost"_a = counts.lost,
                   "every"_a = counts.skipped, "class"_a = counts.classes,
-                  "returns"_a = counts.returns, "bounds"_a = counts.bounds,
+                  "returns"_a = counts.returns, "bounds"_a = counts.bounds, "clip"_a = counts.clip,
                   "where"_a = counts.where, "thinned"_a = counts.thinned, "kept"_a = counts.kept());
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,19 @@ struct CrsUnits {
   double vertical = 0;         ///< metres in a unit of z; 0: not told
   double semi_major = 0;       ///< of the ellipsoid, in metres
   double flattening = 0;       ///< of the ellipsoid
+};
+
+/// Brings points from one coordinate system to another. For one thread at a time.
+class CrsTransform {
+ public:
+  CrsTransform() = default;
+  virtual ~CrsTransform() = default;
+  CrsTransform(const CrsTransform&) = delete;
+  CrsTransform& operator=(const CrsTransform&) = delete;
+
+  /// Coordinates of one axis each, of equal counts, become those of the other system; of points that
+  /// have none there, infinite ones.
+  virtual void apply(std::span<double> x, std::span<double> y, std::span<double> z) = 0;
 };
 
 /// What the module offers. A coordinate system is given as WKT (1 or 2), as "EPSG:n" or as PROJ
@@ -68,6 +82,11 @@ class Gdal {
   [[nodiscard]] virtual std::string crs_of_geotiff_keys(const GeotiffKeys& keys,
                                                         CrsKind kind) const = 0;
 
+  /// Brings coordinates from one system to another by PROJ, x to the east and y to the north in
+  /// both. Throws Failure if it cannot.
+  [[nodiscard]] virtual std::unique_ptr<CrsTransform> create_transform(
+      const std::string& from, const std::string& to) const = 0;
+
   /// Why coordinates cannot be brought to longitude and latitude of WGS 84, in words; empty if they
   /// can.
   [[nodiscard]] virtual std::string why_not_lonlat(const std::string& crs) const = 0;
@@ -83,6 +102,12 @@ class Gdal {
   /// The polygons of a vector file of one layer; arcs become short lines. Throws Failure for other
   /// geometries.
   [[nodiscard]] virtual PolygonLayer read_polygons(const std::string& path) const = 0;
+
+  /// The areas of what is no farther than `distance` from the geometries of a vector file of one
+  /// layer, of polygons, lines or points, with round corners; below 0: of what is that far inside of
+  /// polygons. Throws Failure if nothing is left.
+  [[nodiscard]] virtual PolygonLayer read_buffers(const std::string& path,
+                                                  double distance) const = 0;
 
   /// What a polygon, its outer ring first, has in common with those of `area`, whose rings come in
   /// no order: each its outer ring, counter-clockwise, then its holes, clockwise. What has no area is

@@ -46,6 +46,7 @@ enum class Remedy {
   kGroundScale,      ///< saying how heights relate to x and y, or which system these are in
   kSalvage,          ///< taking the points that are whole of a file that is cut off or damaged
   kForce,            ///< replacing an input by what holds less, if that is meant
+  kGivenCrs,         ///< naming the coordinate system of inputs that name none
   kAttributes,       ///< leaving out attributes of points
 };
 

@@ -17,6 +17,7 @@ struct PointCounts {
   std::uint64_t classes = 0;   ///< of other classes
   std::uint64_t returns = 0;   ///< of other returns
   std::uint64_t bounds = 0;    ///< outside of the bounds
+  std::uint64_t clip = 0;      ///< where PointOptions::clip keeps none
   std::uint64_t thinned = 0;   ///< another one stands for their cell
   /// Not read, though the files should hold them: what PointOptions::salvage could not save.
   std::uint64_t lost = 0;
@@ -32,6 +33,7 @@ struct PointCounts {
     classes += other.classes;
     returns += other.returns;
     bounds += other.bounds;
+    clip += other.clip;
     thinned += other.thinned;
     lost += other.lost;
     where += other.where;
@@ -41,7 +43,7 @@ struct PointCounts {
   bool operator==(const PointCounts&) const = default;
 
   [[nodiscard]] std::uint64_t dropped() const {
-    return invalid + withheld + skipped + classes + returns + where + bounds + thinned;
+    return invalid + withheld + skipped + classes + returns + where + bounds + clip + thinned;
   }
   /// Whether every point of the files is used.
   [[nodiscard]] bool all_kept() const { return dropped() == 0 && lost == 0; }

@@ -9,6 +9,7 @@
 #include <spillway/lattice.h>
 #include <spillway/point_view.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -102,14 +103,27 @@ struct PointOptions {
   /// z, and the words first, last and single (docs/attributes.md). Empty: all.
   std::string where{};
   std::optional<Extent> bounds{};  ///< use points in this closed box; sides may be infinite
+  std::optional<std::array<double, 2>> z_range{};  ///< use points of heights from low to high
+  /// Use points that lie in the polygons of this vector file, of any format that GDAL reads; empty:
+  /// all. What lies on an edge belongs to what is east of it, or north of a level one. Its
+  /// coordinate system must be that of the points, unless `foreign_crs`.
+  std::string clip{};
+  /// Use points that are no farther than this from what the file has, which may be lines and points,
+  /// too; below 0: those that are so far inside of its polygons.
+  double clip_buffer = 0;
+  bool clip_outside = false;  ///< use the other points instead
   std::optional<Thin> thin{};
   /// Of COPC files, read the levels that are needed for points so far apart; 0: all.
   double resolution = 0;
   /// The coordinate system of inputs that name none, as WKT or "EPSG:n"; empty: as inputs say.
-  /// Nothing is transformed. With `foreign_crs` also of inputs that name another one.
+  /// Nothing is transformed by it. With `foreign_crs` also of inputs that name another one.
   std::string crs{};
   bool foreign_crs = false;  ///< take coordinates as they are, whatever their coordinate systems
-  bool metadata = false;     ///< keep what LAS files tell besides points, for convert() to LAS
+  /// Bring points to this coordinate system, as WKT or "EPSG:n", before anything else is done with
+  /// them: filters, too, see them there. Inputs may be in different systems. Empty: not so.
+  std::string to_crs{};
+  double z_multiplier = 1;  ///< multiply heights by this, after that
+  bool metadata = false;    ///< keep what LAS files tell besides points, for convert() to LAS
   /// Of LAS and LAZ files that are cut off or damaged, use the points that are whole, and count the
   /// others as lost, with a warning; and use those that a header does not count. Without it such a
   /// file is an error. Runs whose points are lost or found so do not know beforehand how many come.

@@ -52,6 +52,12 @@ class FilterOptions(TypedDict, total=False):
     returns: int | str | Iterable[int | str] | None
     where: str | None
     thin: float | tuple[float, str] | None
+    z_range: tuple[float, float] | None
+    clip: PathLike | None
+    clip_buffer: float | None
+    clip_outside: bool
+    to_crs: str | os.PathLike[str] | None
+    multiply_z: float | None
 
 
 class PlaceOptions(TypedDict, total=False):
@@ -322,6 +328,43 @@ _OPTIONS = {
         "Use points in xmin, ymin, xmax, ymax or xmin, ymin, zmin, xmax, ymax, zmax.",
         "points",
         functools.partial(_put_box, "clip_bounds"),
+    ),
+    "z_range": _Option(
+        "(float, float), optional",
+        "Use points with heights from the first to the second.",
+        "points",
+        attribute("z_range", as_reals),
+    ),
+    "clip": _Option(
+        "path, optional",
+        "Use points in the polygons of this vector file, of any format that GDAL reads.",
+        "points",
+        attribute("clip", functools.partial(as_path, name="clip")),
+    ),
+    "clip_buffer": _Option(
+        "float, optional",
+        "Use points up to this far from what `clip` has, lines and points, too; below 0: so far "
+        "inside of its polygons.",
+        "points",
+        attribute("clip_buffer"),
+    ),
+    "clip_outside": _Option(
+        "bool, optional",
+        "Use the points that `clip` leaves out.",
+        "points",
+        attribute("clip_outside"),
+    ),
+    "to_crs": _Option(
+        "str or path-like, optional",
+        "Bring points to this coordinate system, before anything else is done with them.",
+        "points",
+        attribute("to_crs", as_crs),
+    ),
+    "multiply_z": _Option(
+        "float, optional",
+        "Multiply heights by this, after that.",
+        "points",
+        attribute("z_multiplier"),
     ),
     "resolution": _Option(
         "float, optional",

@@ -73,6 +73,12 @@ class PointOptions:
     resolution: float
     crs: str
     foreign_crs: bool
+    clip: bytes
+    clip_buffer: float
+    clip_outside: bool
+    z_range: tuple[float, float] | None
+    to_crs: str
+    z_multiplier: float
     metadata: bool
     attributes: list[str]
     def set_returns(self, first: bool, last: bool, single: bool, numbers: list[int]) -> None: ...

@@ -43,6 +43,12 @@ bool is_between(const Point<2>& a, const Point<2>& b, const Point<2>& place) {
 
 }  // namespace
 
+Box<2> box_of_line(std::span<const Point<2>> line) {
+  Box<2> box;
+  for (const Point<2>& point : line) box.expand(point);
+  return box;
+}
+
 PolygonEdges::PolygonEdges(std::span<const std::vector<Point<2>>> rings) {
   for (const std::vector<Point<2>>& ring : rings) {
     for (std::size_t i = 0; i < ring.size(); ++i) {

@@ -11,6 +11,9 @@
 
 namespace spillway::terrain {
 
+/// Around points of a line or a ring.
+Box<2> box_of_line(std::span<const Point<2>> line);
+
 /// A polygon for asking what lies in it, by the even-odd rule over all rings. What lies on an edge
 /// belongs to what is east of it, or north of a level one; so of polygons that share their edges,
 /// each place is in one.

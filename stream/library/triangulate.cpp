@@ -10,6 +10,7 @@
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
+#include "stream/library/crs_notices.h"
 #include "stream/library/meshes/program_sink.h"
 #include "stream/library/own_parts.h"
 #include "stream/library/points/program_points.h"
@@ -142,6 +143,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .scratch = context.state().scratch(context)};
   run.engine.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
+  tell_units(run.points.crs, run.points.extent, context);
   target->check_attributes(run.points.offered);
   // Processes share points out as they triangulate them.
   if (!target->wants_simplices() && executor == nullptr) {

@@ -64,7 +64,13 @@ struct Surveyed {
 
 Surveyed survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options) {
   Surveyed all;
-  all.reader = open_point_reader(files, path, options.reader);
+  auto reader = open_point_reader(files, path, options.reader);
+  if (options.transform.changes_plane()) {
+    all.input.transformed_from =
+        system_to_transform(reader->header(), options.crs, options.transform, options.warn);
+  }
+  all.reader = transformed(std::move(reader), all.input.transformed_from, options.transform,
+                           options.reader.skip_invalid);
   all.input.header = all.reader->header();
   std::error_code unknown;
   SourceFacts::Input& input = all.input;
@@ -162,7 +168,8 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
                     std::move(faults));
   }
   tell_notices(all.facts, options);
-  all.facts.crs = find_crs(all.facts, {options.crs, options.warn, options.detail});
+  const CrsChoice choice = options.transform.changes_plane() ? CrsChoice{} : options.crs;
+  all.facts.crs = find_crs(all.facts, {choice, options.warn, options.detail});
   return all;
 }
 

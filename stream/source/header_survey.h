@@ -13,6 +13,7 @@
 #include "stream/source/input_crs.h"
 #include "stream/source/point_filter.h"
 #include "stream/source/source_facts.h"
+#include "stream/source/transformed_points.h"
 
 namespace spillway::stream {
 
@@ -21,6 +22,7 @@ struct HeaderSurveyOptions {
   PointReaderOptions reader{};
   PointFilter filter{};  ///< says what inputs must have
   CrsChoice crs{};
+  PointTransform transform{};  ///< of all inputs
   bool skip_broken = false;  ///< leave out files that cannot be opened, or whose headers are broken
   bool digests = false;      ///< facts have digests of files
   /// Receives what is worth a warning, and what only -v shows.

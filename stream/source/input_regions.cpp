@@ -62,7 +62,7 @@ InputRegions::InputRegions(const SourceFacts& facts, const SourceCoordinates& co
                            [](const SourceFacts::Input& input) { return input.header; })) {
     return;
   }
-  const std::optional<Box<3>> bounds = filter.loose_bounds();
+  const std::optional<Box<3>> bounds = filter.loose_box();
   for (std::size_t i = 0; i < facts.inputs.size(); ++i) {
     const PointHeader& header = facts.inputs[i].header;
     first_.push_back(regions_.size());

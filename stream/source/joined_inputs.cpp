@@ -15,7 +15,8 @@ namespace {
 /// What readers have to give, so that the filter can look at it.
 PointReaderOptions reader_options(const JoinedInputsOptions& options) {
   PointReaderOptions reader = options.reader;
-  if (options.filter.bounds) reader.bounds = options.filter.loose_bounds();
+  // Bounds are those of what points become.
+  if (options.transform.is_none()) reader.bounds = options.filter.loose_box();
   return reader;
 }
 
@@ -24,6 +25,7 @@ HeaderSurveyOptions survey_options(const JoinedInputsOptions& options) {
           .reader = reader_options(options),
           .filter = options.filter,
           .crs = options.crs,
+          .transform = options.transform,
           .skip_broken = options.skip_broken,
           .digests = options.digests,
           .warn = options.warn,
@@ -58,11 +60,11 @@ JoinedInputs::JoinedInputs(FileSystem& files, const JoinedInputsOptions& options
       paths_(std::move(survey.paths)),
       skipped_(std::move(survey.skipped)),
       pieces_(files, paths_, facts_, std::move(survey.readers),
-              {options.dimension, reader_options(options), std::move(viewer), options.detail}),
+              {options.dimension, reader_options(options), options.transform, std::move(viewer),
+               options.detail}),
       world_extent_(find_world_extent()) {
   carry({});
-  if (const auto told = facts_.extent(options.filter.bounds))
-    extent_ = coordinates_.of_world(*told);
+  if (const auto told = facts_.extent(options.filter.box())) extent_ = coordinates_.of_world(*told);
   if (const auto& thinning = options.thinning) {
     thinning_.emplace(ThinningOptions{.cell = thinning->cell,
                                       .choice = thinning->choice,
@@ -76,7 +78,7 @@ JoinedInputs::JoinedInputs(FileSystem& files, const JoinedInputsOptions& options
 
 /// As points at its edges have it, to the last bit: headers may round otherwise.
 std::optional<Box<3>> JoinedInputs::find_world_extent() const {
-  const std::optional<Box<3>>& bounds = options_.filter.bounds;
+  const std::optional<Box<3>> bounds = options_.filter.box();
   if (!facts_.extent(bounds)) return std::nullopt;
   Box<3> extent;
   for (std::size_t i = 0; i < facts_.inputs.size(); ++i) {
@@ -200,7 +202,8 @@ void JoinedInputs::restore(StateReader& state) {
 }
 
 void JoinedInputs::settle_crs(CrsNeed need) {
-  facts_.crs = settled_crs(facts_, need, {options_.crs, options_.warn, options_.detail});
+  const CrsChoice choice = options_.transform.changes_plane() ? CrsChoice{} : options_.crs;
+  facts_.crs = settled_crs(facts_, need, {choice, options_.warn, options_.detail});
 }
 
 std::vector<PointHeader> JoinedInputs::headers() const {

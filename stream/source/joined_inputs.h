@@ -45,6 +45,7 @@ struct JoinedInputsOptions {
   PointFilter filter{};
   std::optional<ThinningRequest> thinning{};
   CrsChoice crs{};
+  PointTransform transform{};
   bool skip_broken = false;  ///< leave out files whose headers cannot be read
   bool digests = false;      ///< facts() have digests, for other processes to compare files by
   std::string viewer{};      ///< who reads files that another process has looked at, for messages

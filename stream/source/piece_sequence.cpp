@@ -80,8 +80,10 @@ void PieceSequence::begin_turn() {
 void PieceSequence::open_current() {
   Input& input = inputs_[current()];
   if (input.reader) return;
-  auto reader = open_point_reader(files_, input.path, options_.reader);
   const SourceFacts::Input& surveyed = facts_.inputs[current()];
+  auto reader =
+      transformed(open_point_reader(files_, input.path, options_.reader), surveyed.transformed_from,
+                  options_.transform, options_.reader.skip_invalid);
   // A digest tells more, and what comes from another process has no regions.
   if (!surveyed.digest) refuse_changed_input(surveyed, input.path, *reader);
   if (!attributes_.empty()) carry_by(*reader);

@@ -14,12 +14,14 @@
 #include "formats/points/common/point_reader.h"
 #include "stream/points/point_feed.h"
 #include "stream/source/source_facts.h"
+#include "stream/source/transformed_points.h"
 
 namespace spillway::stream {
 
 struct PieceSequenceOptions {
   int dimension = 0;  ///< of the points: the first attributes are coordinates beyond z
   PointReaderOptions reader{};
+  PointTransform transform{};  ///< of all inputs
   /// Who reads files that another process has looked at, for messages; empty: it was this one.
   std::string viewer{};
   /// Is told of each input that has been read to its end.

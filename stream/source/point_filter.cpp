@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -92,6 +93,10 @@ std::vector<double> column_of(const std::string& name, const std::optional<Integ
   return column;
 }
 
+bool keeps(const ClipArea& area, const WorldPoint& point) {
+  return area.keeps({point[0], point[1]});
+}
+
 std::vector<bool> where_holds(const Condition& where, const std::optional<IntegerLattice>& lattice,
                               const AttributeLayout& layout, const PointBlock& block) {
   std::vector<std::vector<double>> columns;
@@ -122,9 +127,18 @@ std::vector<std::string> PointFilter::attributes() const {
   return names;
 }
 
-std::optional<Box<3>> PointFilter::loose_bounds() const {
+std::optional<Box<3>> PointFilter::box() const {
+  const std::optional<Box<2>> area = clip ? clip->box() : std::nullopt;
+  if (!area) return bounds;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Box<3> column = {{area->lo[0], area->lo[1], -kInfinity},
+                         {area->hi[0], area->hi[1], kInfinity}};
+  return bounds ? common_part(column, *bounds) : column;
+}
+
+std::optional<Box<3>> PointFilter::loose_box() const {
   constexpr double kMargin = 1e-12;
-  std::optional<Box<3>> loose = bounds;
+  std::optional<Box<3>> loose = box();
   if (!loose) return loose;
   for (int k = 0; k < 3; ++k) {
     loose->lo[k] -= std::abs(loose->lo[k]) * kMargin;
@@ -165,6 +179,8 @@ void apply_filter(const PointFilter& filter, const std::optional<IntegerLattice>
       ++counts.where;
     } else if (filter.bounds && !filter.bounds->contains(in_world(lattice, block.points[i]))) {
       ++counts.bounds;
+    } else if (filter.clip && !keeps(*filter.clip, in_world(lattice, block.points[i]))) {
+      ++counts.clip;
     } else {
       kept[i] = true;
     }
@@ -181,7 +197,7 @@ std::string describe(const PointCounts& counts) {
   if (counts.lost > 0) {
     text += fmt::format(" ({} {} lost)", counts.lost, counts.lost == 1 ? "is" : "are");
   }
-  const std::array<std::pair<std::uint64_t, std::string>, 8> dropped = {
+  const std::array<std::pair<std::uint64_t, std::string>, 9> dropped = {
       {{counts.invalid, "invalid"},
        {counts.withheld, "withheld"},
        {counts.skipped, "skipped"},
@@ -189,6 +205,7 @@ std::string describe(const PointCounts& counts) {
        {counts.returns, "of other returns"},
        {counts.where, "for which the condition does not hold"},
        {counts.bounds, "outside the bounds"},
+       {counts.clip, "clipped"},
        {counts.thinned, "thinned"}}};
   for (const auto& [count, why] : dropped) {
     if (count > 0) text += fmt::format(", {} {}", count, why);

@@ -11,6 +11,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/source/clip_area.h"
 #include "stream/source/condition/condition.h"
 
 namespace spillway::stream {
@@ -36,15 +37,18 @@ struct PointFilter {
   std::optional<std::bitset<256>> classes{};
   std::optional<ReturnFilter> returns{};
   std::optional<Condition> where{};
-  std::optional<Box<3>> bounds{};  ///< in output coordinates, closed
+  std::optional<Box<3>> bounds{};          ///< in output coordinates, closed
+  std::shared_ptr<const ClipArea> clip{};  ///< likewise; null: all of the plane
 
-  [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds; }
+  [[nodiscard]] bool active() const { return every > 1 || needs_attributes() || bounds || clip; }
   [[nodiscard]] bool needs_attributes() const { return classes || returns || where; }
   /// The names of the attributes that it looks at.
   [[nodiscard]] std::vector<std::string> attributes() const;
-  /// Slightly larger bounds, for whoever computes coordinates with another lattice than the common
-  /// one: they leave out nothing that may be inside `bounds`.
-  [[nodiscard]] std::optional<Box<3>> loose_bounds() const;
+  /// Around what bounds and clip leave; nothing if that is not bounded.
+  [[nodiscard]] std::optional<Box<3>> box() const;
+  /// A slightly larger one, for whoever computes coordinates with another lattice than the common
+  /// one: it leaves out nothing that may be inside.
+  [[nodiscard]] std::optional<Box<3>> loose_box() const;
 };
 
 /// Throws Failure: there are no points, or none are left of those that were read.

@@ -41,7 +41,7 @@ SourceCoordinates::SourceCoordinates(const SourceFacts& facts, int dimension,
       dimension_(dimension > 0 ? std::min(dimension, kOwnAxes) : 2),
       filter_(filter),
       inputs_(facts.inputs.size()) {
-  filter_.bounds = filter.loose_bounds();
+  if (filter.bounds) filter_.bounds = filter.loose_box();
   check_own_lattices();
   find_lattice(detail);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -62,7 +62,7 @@ void SourceCoordinates::check_own_lattices() {
     inputs_[i].exact_up_to = exact_up_to(*header.lattice, dimension_);
     if (!header.extent || !extent_tells) continue;
     const Box<3> kept =
-        filter_.bounds ? common_part(*header.extent, *filter_.bounds) : *header.extent;
+        filter_.box() ? common_part(*header.extent, *filter_.loose_box()) : *header.extent;
     check_lattice({header.name}, *header.lattice,
                   common_part(integers_of(*header.lattice, kept), possible), dimension_);
   }

@@ -39,9 +39,9 @@ std::optional<std::uint64_t> SourceFacts::expected(const PointFilter& filter) co
   for (const Input& input : inputs) {
     if (!input.header.count) return std::nullopt;
     double count = static_cast<double>(*input.header.count);
-    if (filter.bounds && input.header.extent) {
+    if (filter.box() && input.header.extent) {
       const Box<3>& whole = *input.header.extent;
-      count *= share_of(common_part(whole, *filter.bounds), whole);
+      count *= share_of(common_part(whole, *filter.box()), whole);
     }
     expected += count;
   }

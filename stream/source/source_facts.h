@@ -20,6 +20,7 @@ struct SourceFacts {
     bool opens_once = false;               ///< a pipe: the rest of it is with who looked at it
     std::optional<FileDigest> digest{};    ///< of a file, if asked for
     std::optional<std::uint64_t> bytes{};  ///< size of a file
+    std::string transformed_from{};        ///< its own coordinate system; empty: it stays there
 
     [[nodiscard]] bool has_heights() const { return header.coordinates != 2; }
     /// Whether some of its points may be flagged as withheld.

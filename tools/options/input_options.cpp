@@ -45,7 +45,8 @@ std::optional<T> number_of(std::string_view text) {
 
 bool InputOptions::filters() const {
   return every > 1 || resolution > 0 || !keep_class.empty() || !where.empty() ||
-         !drop_class.empty() || !returns.empty() || !bounds.empty() || !thin.empty();
+         !drop_class.empty() || !returns.empty() || !bounds.empty() || !z_range.empty() ||
+         !clip.empty() || !thin.empty();
 }
 
 void add_input_options(CommandLine& app, InputOptions& options) {
@@ -62,6 +63,14 @@ void add_input_options(CommandLine& app, InputOptions& options) {
       .value_name("CRS");
   app.add_flag("--force-crs", options.force_crs,
                "Use coordinates as they are, even if coordinate systems differ");
+  take_parsed(app.add_option("--to-crs", options.to_crs,
+                             "Bring points to this coordinate system, before all else"),
+              parse_crs)
+      .value_name("CRS");
+  take_positive_number(
+      app.add_option("--multiply-z", options.z_multiplier,
+                     "Multiply heights by this, after that, as 0.3048 for feet in metres"))
+      .value_name("F");
   const std::string group = kFilterGroup;
   const auto add = [&](const char* name, std::string& value, const char* type, const char* what) {
     return app.add_option(name, value, what).value_name(type).group(group);
@@ -80,6 +89,17 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   take_parsed(add("--bounds", options.bounds, "BOX",
                   "Use points in xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax"),
               parse_bounds);
+  take_parsed(
+      add("--z-range", options.z_range, "LOW,HIGH", "Use points with heights from low to high"),
+      parse_z_range);
+  add("--clip", options.clip, "FILE", "Use points in the polygons of this vector file");
+  take_number(app.add_option("--clip-buffer", options.clip_buffer,
+                             "Use points up to this far from what --clip has, lines and points, "
+                             "too; below 0: so far inside"))
+      .value_name("D")
+      .group(group);
+  app.add_flag("--clip-outside", options.clip_outside, "Use the points that --clip leaves out")
+      .group(group);
   take_whole_number(
       app.add_option("--every", options.every, "Use records 0, N, 2N, ... of each input"), 1)
       .value_name("N")
@@ -256,6 +276,20 @@ void parse_condition(const std::string& text) {
   }
 }
 
+std::array<double, 2> parse_z_range(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ',');
+  std::array<double, 2> range{};
+  bool valid = parts.size() == range.size();
+  for (std::size_t i = 0; valid && i < range.size(); ++i) {
+    const auto number = parse_number(parts[i]);
+    valid = number.has_value();
+    if (valid) range.at(i) = *number;
+  }
+  if (valid && range[0] <= range[1]) return range;
+  throw UsageError(fmt::format(
+      "\"{}\" is no range of heights; give the lowest and the highest, as 10,250.5", text));
+}
+
 PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
@@ -271,10 +305,19 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   points.where = options.where;
   if (!options.returns.empty()) points.returns = parse_returns(options.returns);
   if (!options.bounds.empty()) points.bounds = parse_bounds(options.bounds);
+  if (!options.z_range.empty()) points.z_range = parse_z_range(options.z_range);
+  if (options.clip.empty() && (options.clip_buffer != 0 || options.clip_outside)) {
+    throw UsageError("--clip-buffer and --clip-outside have no effect without --clip");
+  }
+  points.clip = options.clip;
+  points.clip_buffer = options.clip_buffer;
+  points.clip_outside = options.clip_outside;
   if (!options.thin.empty()) points.thin = parse_thinning(options.thin);
   points.resolution = options.resolution;
   if (!options.crs.empty()) points.crs = parse_crs(options.crs);
   points.foreign_crs = options.force_crs;
+  if (!options.to_crs.empty()) points.to_crs = parse_crs(options.to_crs);
+  points.z_multiplier = options.z_multiplier;
   return points;
 }
 

@@ -20,6 +20,8 @@ struct InputOptions {
   std::string columns;
   std::string crs;
   bool force_crs = false;
+  std::string to_crs;
+  double z_multiplier = 1;
   bool skip_invalid = false;
   bool salvage = false;
   bool skip_broken = false;
@@ -30,6 +32,10 @@ struct InputOptions {
   std::string drop_class;
   std::string returns;
   std::string bounds;
+  std::string z_range;
+  std::string clip;
+  double clip_buffer = 0;
+  bool clip_outside = false;
   std::string thin;
   double resolution = 0;
 
@@ -38,11 +44,12 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 16> kInputOptionNames = {
-    "--input-format", "--columns",       "--crs",         "--force-crs",
-    "--skip-invalid", "--keep-withheld", "--every",       "--keep-class",
-    "--drop-class",   "--returns",       "--bounds",      "--thin",
-    "--resolution",   "--salvage",       "--skip-broken", "--where"};
+inline constexpr std::array<std::string_view, 22> kInputOptionNames = {
+    "--input-format", "--columns",      "--crs",         "--force-crs",     "--to-crs",
+    "--multiply-z",   "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",
+    "--keep-class",   "--drop-class",   "--returns",     "--where",         "--bounds",
+    "--z-range",      "--clip",         "--clip-buffer", "--clip-outside",  "--thin",
+    "--resolution",   "--salvage"};
 
 /// The heading in help of the options that are filters.
 
@@ -61,6 +68,9 @@ MeshOptions mesh_options(const InputOptions& options, const std::string& format)
 /// Reads the value of --crs: a code or WKT as it is, or what stands in the file that it names. This
 /// and what follows throws UsageError that says what is expected, for take_parsed().
 std::string parse_crs(std::string_view text);
+
+/// Reads the value of --z-range: the lowest and the highest height.
+std::array<double, 2> parse_z_range(std::string_view text);
 
 /// Reads the value of --keep-class: numbers and ranges, "2,3-5".
 std::vector<int> parse_classes(std::string_view text);

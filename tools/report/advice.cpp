@@ -66,6 +66,8 @@ std::string advice(const ErrorFacts& facts) {
     case Remedy::kUnknownCrs:
       return "; name their coordinate system with --crs, or write them as they are with "
              "--force-crs";
+    case Remedy::kGivenCrs:
+      return "; name it with --crs";
     case Remedy::kWrongCrs:
       return "; name the right coordinate system with --crs and --force-crs";
     case Remedy::kGroundScale:

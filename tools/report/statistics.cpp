@@ -124,7 +124,7 @@ Json ranks(const TracedReport& report) {
 Json to_json(const PointCounts& counts) {
   return {{"read", counts.read},     {"invalid", counts.invalid}, {"withheld", counts.withheld},
           {"every", counts.skipped}, {"class", counts.classes},   {"returns", counts.returns},
-          {"bounds", counts.bounds}, {"thinned", counts.thinned}, {"kept", counts.kept()},
+          {"bounds", counts.bounds}, {"clip", counts.clip}, {"thinned", counts.thinned}, {"kept", counts.kept()},
           {"lost", counts.lost},     {"where", counts.where}};
 }
 

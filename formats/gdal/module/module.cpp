@@ -17,6 +17,7 @@
 #include "formats/gdal/module/mosaic.h"
 #include "formats/gdal/module/ogr_clip.h"
 #include "formats/gdal/module/ogr_polygons.h"
+#include "formats/gdal/module/proj_transform.h"
 #include "formats/gdal/vector_drivers.h"
 
 namespace spillway::formats {
@@ -81,6 +82,13 @@ class LoadedGdal : public Gdal {
   }
   [[nodiscard]] PolygonLayer read_polygons(const std::string& path) const override {
     return read_ogr_polygons(path);
+  }
+  [[nodiscard]] PolygonLayer read_buffers(const std::string& path, double distance) const override {
+    return read_ogr_buffers(path, distance);
+  }
+  [[nodiscard]] std::unique_ptr<CrsTransform> create_transform(
+      const std::string& from, const std::string& to) const override {
+    return create_proj_transform(from, to);
   }
   [[nodiscard]] std::vector<PolygonRings> clip(const PolygonRings& polygon,
                                                const PolygonRings& area) const override {

@@ -4,7 +4,9 @@
 #include <ogrsf_frmts.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "formats/gdal/module/crs.h"
@@ -45,17 +47,23 @@ PolygonFeature feature_of(OGRFeature& feature, const std::string& path) {
   return result;
 }
 
-}  // namespace
-
-std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
-  std::vector<Point<2>> points;
-  points.reserve(static_cast<std::size_t>(ring.getNumPoints()));
-  for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
-  if (points.size() > 1 && points.front() == points.back()) points.pop_back();
-  return points;
+/// What is no farther from a feature than a distance; nothing without a geometry.
+PolygonFeature buffer_of(OGRFeature& feature, double distance, const std::string& path) {
+  constexpr int kEdgesOfQuarterCircle = 30;
+  PolygonFeature result;
+  const OGRGeometry* const geometry = feature.GetGeometryRef();
+  if (geometry == nullptr) return result;
+  const std::unique_ptr<OGRGeometry> buffer(geometry->Buffer(distance, kEdgesOfQuarterCircle));
+  if (!buffer || !add_rings(*buffer, result.rings)) {
+    throw BadInput(path, fmt::format("feature {} has no buffer of {}: {}", feature.GetFID(),
+                                     distance, gdal_reason()));
+  }
+  return result;
 }
 
-PolygonLayer read_ogr_polygons(const std::string& path) {
+/// What `read` makes of each feature of a file of one layer.
+PolygonLayer read_layer(const std::string& path,
+                        const std::function<PolygonFeature(OGRFeature&)>& read) {
   forget_gdal_errors();
   constexpr unsigned kHow = GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   const GDALDatasetUniquePtr file(GDALDataset::Open(path.c_str(), kHow, nullptr, nullptr, nullptr));
@@ -71,13 +79,41 @@ PolygonLayer read_ogr_polygons(const std::string& path) {
   OGRLayer& layer = *file->GetLayer(0);
   PolygonLayer result;
   result.crs = wkt_of_layer(layer.GetSpatialRef());
-  for (const auto& feature : layer) result.polygons.push_back(feature_of(*feature, path));
+  for (const auto& feature : layer) {
+    PolygonFeature polygon = read(*feature);
+    if (!polygon.rings.empty()) result.polygons.push_back(std::move(polygon));
+  }
   if (gdal_failed()) {
     throw Failure(fmt::format("cannot read {}: {}", path, gdal_reason()), ErrorCode::kBadInput,
                   {.file = path});
   }
-  if (result.polygons.empty()) throw BadInput(path, "it has no polygons");
   return result;
+}
+
+}  // namespace
+
+std::vector<Point<2>> points_of(const OGRLinearRing& ring) {
+  std::vector<Point<2>> points;
+  points.reserve(static_cast<std::size_t>(ring.getNumPoints()));
+  for (int i = 0; i < ring.getNumPoints(); ++i) points.push_back({ring.getX(i), ring.getY(i)});
+  if (points.size() > 1 && points.front() == points.back()) points.pop_back();
+  return points;
+}
+
+PolygonLayer read_ogr_polygons(const std::string& path) {
+  PolygonLayer layer =
+      read_layer(path, [&](OGRFeature& feature) { return feature_of(feature, path); });
+  if (layer.polygons.empty()) throw BadInput(path, "it has no polygons");
+  return layer;
+}
+
+PolygonLayer read_ogr_buffers(const std::string& path, double distance) {
+  PolygonLayer layer =
+      read_layer(path, [&](OGRFeature& feature) { return buffer_of(feature, distance, path); });
+  if (layer.polygons.empty()) {
+    throw BadInput(path, fmt::format("nothing of it is left with a buffer of {}", distance));
+  }
+  return layer;
 }
 
 }  // namespace spillway::formats

@@ -15,4 +15,7 @@ std::vector<Point<2>> points_of(const OGRLinearRing& ring);
 /// As Gdal::read_polygons().
 PolygonLayer read_ogr_polygons(const std::string& path);
 
+/// As Gdal::read_buffers().
+PolygonLayer read_ogr_buffers(const std::string& path, double distance);
+
 }  // namespace spillway::formats

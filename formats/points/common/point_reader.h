@@ -115,7 +115,9 @@ struct PointHeader {
   std::optional<std::uint64_t> count;     ///< records in the source, where known beforehand
   std::optional<IntegerLattice> lattice;  ///< set if the points come as integers
   std::optional<Box<3>> extent;           ///< in output coordinates, where the header gives it
-  SharedText crs;        ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  SharedText crs;  ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
+  /// Points have been brought to `crs`, which the source itself does not tell.
+  bool is_transformed = false;
   std::string crs_note;  ///< why there is none, though the source tells of one; or
                          ///< what is not read of it; empty: neither
   /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if

@@ -37,6 +37,15 @@ bool OpenedPoints::identify(RunIdentity& identity) const {
   add("bounds", options_.bounds ? fmt::format("{} to {}", fmt::join(options_.bounds->low, " "),
                                               fmt::join(options_.bounds->high, " "))
                                 : "none");
+  add("z_range",
+      options_.z_range ? fmt::format("{}", fmt::join(*options_.z_range, " to ")) : "all");
+  add("clip", options_.clip.empty()
+                  ? "none"
+                  : fmt::format("{} of {}, {}", options_.clip_outside ? "outside" : "inside",
+                                options_.clip, options_.clip_buffer));
+  if (!options_.clip.empty()) identity.add_file("clip", options_.clip);
+  add("transformed to", options_.to_crs);
+  add("multiplier of heights", options_.z_multiplier);
   add("thinning", options_.thin ? fmt::format("{} of kind {}", options_.thin->cell,
                                               static_cast<int>(options_.thin->choice))
                                 : "none");

@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "formats/gdal/gdal.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
@@ -20,6 +23,7 @@
 #include "stream/library/given_crs.h"
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
+#include "stream/library/products/surface_units.h"
 
 namespace spillway::stream {
 namespace {
@@ -48,6 +52,21 @@ ReturnFilter return_filter(const Returns& returns) {
   return filter;
 }
 
+/// Makes bounds keep such heights alone.
+void keep_heights(const std::array<double, 2>& range, std::optional<Box<3>>& bounds) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!(range[0] <= range[1])) {
+    throw InvalidArgument(fmt::format("the range of heights has a least of {}, but a most of {}",
+                                      range[0], range[1]));
+  }
+  if (!bounds)
+    bounds = Box<3>{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  bounds->lo[2] = std::max(bounds->lo[2], range[0]);
+  bounds->hi[2] = std::min(bounds->hi[2], range[1]);
+  if (bounds->lo[2] <= bounds->hi[2]) return;
+  throw InvalidArgument("the bounds and the range of heights have no height in common");
+}
+
 PointFilter filter_of(const PointOptions& options) {
   PointFilter filter;
   if (options.every == 0)
@@ -71,7 +90,22 @@ PointFilter filter_of(const PointOptions& options) {
     }
     filter.bounds = Box<3>{options.bounds->low, options.bounds->high};
   }
+  if (options.z_range) keep_heights(*options.z_range, filter.bounds);
   return filter;
+}
+
+/// The polygons, and their coordinate system.
+ClipArea clip_area_of(const PointOptions& options, std::string& crs) {
+  if (!std::isfinite(options.clip_buffer)) {
+    throw InvalidArgument(fmt::format("a buffer of {} is no distance", options.clip_buffer));
+  }
+  PolygonLayer layer = options.clip_buffer == 0
+                           ? gdal().read_polygons(options.clip)
+                           : gdal().read_buffers(options.clip, options.clip_buffer);
+  crs = std::move(layer.crs);
+  std::vector<PolygonEdges> polygons;
+  for (const PolygonFeature& polygon : layer.polygons) polygons.emplace_back(polygon.rings);
+  return {std::move(polygons), options.clip_outside};
 }
 
 ThinningRequest thinning_of(const Thin& thin, std::uint64_t memory, ScratchFolder& scratch) {
@@ -184,7 +218,17 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.reader.metadata = options.metadata;
   how.reader.resolution = options.resolution;
   how.filter = filter_of(options);
+  if (!options.clip.empty()) {
+    how.filter.clip = std::make_shared<ClipArea>(clip_area_of(options, clip_crs_));
+  } else if (options.clip_buffer != 0 || options.clip_outside) {
+    throw InvalidArgument("there is nothing to clip by: name a file of polygons");
+  }
   how.crs = {checked_crs(options.crs), options.foreign_crs};
+  if (!(options.z_multiplier > 0) || std::isinf(options.z_multiplier)) {
+    throw InvalidArgument(
+        fmt::format("heights are multiplied by a number above 0, not by {}", options.z_multiplier));
+  }
+  how.transform = {checked_crs(options.to_crs), options.z_multiplier};
   if (context.options().warning) how.warn = context.options().warning;
   if (context.options().detail) how.detail = context.options().detail;
   // Over ranks the exchange of the points is still to come.
@@ -219,6 +263,15 @@ void OpenedPoints::check_input(const PointOptions& options, const Context& conte
   if (by_height && !input_->has_heights()) {
     throw InvalidArgument(
         "the points have no z to thin them by: keep the first of a cell, or that at its center");
+  }
+  if (options.z_range && !input_->has_heights()) {
+    throw InvalidArgument("the points have no z to choose them by");
+  }
+  if (options.z_multiplier != 1 && !input_->has_heights()) {
+    throw InvalidArgument("the points have no z to multiply");
+  }
+  if (!options.clip.empty() && !options.foreign_crs) {
+    check_same_crs(name_, input_->crs(), options.clip, clip_crs_, options.clip);
   }
   if (!options.attributes.empty()) refuse_unknown_names(options.attributes, offered());
 }

@@ -37,6 +37,7 @@ class OpenedPoints final : public PointSource, public EnginePoints {
   PointOptions options_;
   bool is_shared_ = false;  ///< by ranks, who tell points by their index
   std::string name_;
+  std::string clip_crs_;                    ///< of PointOptions::clip
   std::shared_ptr<ScratchFolder> scratch_;  ///< for thinning, so it outlives input_
   const Context context_;                   ///< has the files, so it outlives input_, too
   bool is_taken_ = false;                   ///< by a run

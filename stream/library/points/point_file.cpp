@@ -60,9 +60,11 @@ std::shared_ptr<const LasMetadata> las_metadata_of(const std::vector<PointHeader
   return joined(all);
 }
 
-/// Whether `crs` is what the header of each input tells.
+/// Whether `crs` is what each input itself tells.
 bool is_crs_of_all(const std::vector<PointHeader>& headers, const std::string& crs) {
-  return std::ranges::all_of(headers, [&](const PointHeader& header) { return header.crs == crs; });
+  return std::ranges::all_of(headers, [&](const PointHeader& header) {
+    return header.crs == crs && !header.is_transformed;
+  });
 }
 
 /// `crs` as WKT if it is a code and GDAL is there to tell; else empty.

@@ -7,7 +7,7 @@
 
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
-#include "src/geometry/box.h"
+#include "src/terrain/polygon_edges.h"
 
 namespace spillway::stream {
 namespace {
@@ -20,8 +20,7 @@ constexpr double kFarthestSquare = 1e15;
 
 /// Throws InvalidArgument where the side is too small for that.
 void VectorSquares::check(std::span<const Point<2>> points) const {
-  Box<2> box;
-  for (const Point<2>& point : points) box.expand(point);
+  const Box<2> box = box_of_line(points);
   if (box.empty()) return;
   double farthest = 0;
   double squares = 0;
@@ -52,8 +51,7 @@ void VectorSquares::cut(std::span<const Point<2>> line, const TakePiece& take) {
 /// Halves what lies in several squares along an edge of them, again and again.
 void VectorSquares::cut_polygon(const PolygonRings& polygon, const TakePart& take) {
   check(polygon.front());
-  Box<2> box;
-  for (const Point<2>& point : polygon.front()) box.expand(point);
+  const Box<2> box = box_of_line(polygon.front());
   const GridSquare first = square_at(box.lo, names_.side());
   GridSquare last = square_at(box.hi, names_.side());
   // What only reaches to the edge of one is not in it.

@@ -95,6 +95,7 @@ void pack(Packer& message, const SourceFacts& facts) {
     message.put(input.opens_once);
     pack_optional(message, input.digest);
     pack_optional(message, input.bytes);
+    message.put_list(input.transformed_from);
   }
   message.put_list(facts.crs);
 }
@@ -109,6 +110,7 @@ SourceFacts unpack_source_facts(Unpacker& message) {
     input.opens_once = message.take<bool>();
     input.digest = unpack_optional<FileDigest>(message);
     input.bytes = unpack_optional<std::uint64_t>(message);
+    input.transformed_from = message.take_list<std::string>();
   }
   facts.crs = message.take_list<std::string>();
   return facts;

@@ -45,9 +45,9 @@ TEST(Advice, IsAnotherForEachRemedy) {
         Remedy::kPlane,        Remedy::kFilters,      Remedy::kForeignCrs,
         Remedy::kOneFile,      Remedy::kLas14,        Remedy::kRanks,
         Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders,
-        Remedy::kUnknownCrs,   Remedy::kWrongCrs,     Remedy::kGroundScale,
-        Remedy::kColumns,      Remedy::kSalvage,      Remedy::kForce,
-        Remedy::kAttributes}) {
+        Remedy::kUnknownCrs,   Remedy::kGivenCrs,     Remedy::kWrongCrs,
+        Remedy::kGroundScale,  Remedy::kColumns,      Remedy::kSalvage,
+        Remedy::kForce,        Remedy::kAttributes}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }
