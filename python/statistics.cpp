@@ -39,6 +39,7 @@ void add_mesh(const Report& report, py::dict& statistics) {
   statistics["output_bytes"] = report.output_bytes;
   statistics["output_files"] = report.output_files;
   statistics["outside_tiles"] = report.outside_tiles;
+  statistics["outside_vertices"] = report.outside_vertices;
   statistics["other_files"] = report.other_files;
 }
 

@@ -111,7 +111,8 @@ class Gdal {
 
   /// What a polygon, its outer ring first, has in common with those of `area`, whose rings come in
   /// no order: each its outer ring, counter-clockwise, then its holes, clockwise. What has no area is
-  /// left out. Throws Failure for polygons that cross themselves.
+  /// left out. Of an area that crosses itself, the even-odd rule tells the inside. Throws Failure for
+  /// a polygon that crosses itself.
   [[nodiscard]] virtual std::vector<PolygonRings> clip(const PolygonRings& polygon,
                                                        const PolygonRings& area) const = 0;
 

@@ -9,9 +9,6 @@
 #include "src/geometry/simplex_name.h"
 
 namespace spillway::formats {
-namespace {
-
-/// Throws InvalidArgument if the format cannot hold the mesh.
 void check_holds(const MeshFormat& format, const std::string& path, const MeshContents& contents) {
   if (contents.dimension > format.most_dimension) {
     const bool in_space = contents.dimension == 3;
@@ -30,8 +27,6 @@ void check_holds(const MeshFormat& format, const std::string& path, const MeshCo
         {.file = path});
   }
 }
-
-}  // namespace
 
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,
                             const MeshContents& contents) {

@@ -8,6 +8,9 @@
 
 namespace spillway::formats {
 
+/// Throws Failure if the format cannot hold that.
+void check_holds(const MeshFormat& format, const std::string& path, const MeshContents& contents);
+
 /// Creates the files of the mesh `path` ("-": standard output). Throws Failure if the format cannot
 /// hold it (MeshFormat tells), if it needs two files or one that it can go back in and gets
 /// standard output, or if a file cannot be created.

@@ -55,12 +55,13 @@ struct RunStatistics {
 /// What a run was like: over processes the sums of all of them, the longest of what is wall time.
 struct Report : RunStatistics {
   int dimension = 2;
-  PointCounts points;               ///< of a run from points
-  bool on_lattice = false;          ///< predicates saw integers
-  std::string output_format{};      ///< of files: "spm", "tif", ...
-  std::uint64_t output_bytes = 0;   ///< of files
-  std::uint64_t output_files = 1;   ///< of tiles of a mesh: how many have simplices
-  std::uint64_t outside_tiles = 0;  ///< simplices in no tile, which no file has
+  PointCounts points;                  ///< of a run from points
+  bool on_lattice = false;             ///< predicates saw integers
+  std::string output_format{};         ///< of files: "spm", "tif", ...
+  std::uint64_t output_bytes = 0;      ///< of files
+  std::uint64_t output_files = 1;      ///< of tiles of a mesh: how many have simplices
+  std::uint64_t outside_tiles = 0;     ///< simplices in no tile, which no file has
+  std::uint64_t outside_vertices = 0;  ///< vertices of no simplex in a tile, likewise
   /// Files of other tiles of a mesh that an earlier run may have left beside these.
   std::vector<std::string> other_files{};
   double write_seconds = 0;  ///< wall time of completing the output

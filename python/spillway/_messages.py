@@ -29,6 +29,11 @@ def warn_of_tiles(report: _Report) -> _Report:
     """Warn of what lies in no tile, and of files that are called like tiles; return the report."""
     if report.outside_tiles > 0:
         tell(True, f"{report.outside_tiles} parts are in none of the tiles, and in no file")
+    if report.outside_vertices > 0:
+        tell(
+            True,
+            f"{report.outside_vertices} vertices belong to no simplex of a tile, and are in no file",
+        )
     if report.other_files:
         tell(
             True,

@@ -626,6 +626,8 @@ def put_tiles(
     if isinstance(tiles, (str, bytes, os.PathLike)):
         target.tile_polygons = as_path(tiles, "tiles")
     elif tiles is not None:
+        if not tiles > 0:
+            raise InvalidArgumentError(f"tiles is {tiles}; give a side above 0, or a file")
         put(target, "tiles", tiles, lambda made, side: setattr(made, "tile_side", side))
 
 

@@ -71,6 +71,7 @@ class RunReport(_Report):
     output_bytes: int
     output_files: int
     outside_tiles: int
+    outside_vertices: int
     other_files: list[str]
     threads: int
     tiles: int

@@ -10,6 +10,8 @@ namespace {
 
 /// Edges of a strip, on average, if each lay in one.
 constexpr std::size_t kEdgesOfStrip = 4;
+/// In how many strips an edge may be, on average: tall edges make for fewer strips.
+constexpr std::size_t kMostStripsOfEdge = 8;
 
 /// Above 0: `place` is to the left of the line from a to b.
 int side_of(const Point<2>& a, const Point<2>& b, const Point<2>& place) {
@@ -26,7 +28,8 @@ Point<2> crossing_of(const Point<2>& low, const Point<2>& high, const Point<2>& 
                      const Point<2>& b) {
   const Point<2> along = difference(b, a);
   const Point<2> edge = difference(high, low);
-  const double share = std::clamp(cross(difference(a, low), along) / cross(edge, along), 0.0, 1.0);
+  const double share = cross(difference(a, low), along) / cross(edge, along);
+  if (!(share >= 0 && share <= 1)) return share < 0 ? low : high;  // where rounding leaves nothing
   return {low[0] + edge[0] * share, low[1] + edge[1] * share};
 }
 
@@ -61,6 +64,12 @@ PolygonEdges::PolygonEdges(std::span<const std::vector<Point<2>>> rings) {
     }
   }
   strips_ = std::max<std::size_t>(edges_.size() / kEdgesOfStrip, 1);
+  const auto entries = [&] {
+    std::size_t sum = 0;
+    for (const auto& [low, high] : edges_) sum += strip_of(high[1]) - strip_of(low[1]) + 1;
+    return sum;
+  };
+  while (strips_ > 1 && entries() > kMostStripsOfEdge * edges_.size()) strips_ /= 2;
   std::vector<std::size_t> counts(strips_ + 1);
   const auto for_each_strip = [&](const auto& act) {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {

@@ -6,10 +6,28 @@
 
 namespace spillway::terrain {
 
+namespace {
+
+/// In how many cells a polygon may be, on average: large ones make for fewer cells.
+constexpr std::size_t kMostCellsOfPolygon = 16;
+
+}  // namespace
+
 PolygonIndex::PolygonIndex(std::vector<PolygonEdges> polygons) : polygons_(std::move(polygons)) {
   for (const PolygonEdges& polygon : polygons_) box_.expand(polygon.box());
   const double count = std::max<double>(static_cast<double>(polygons_.size()), 1);
   cells_ = static_cast<std::size_t>(std::ceil(std::sqrt(count)));
+  const auto entries = [&] {
+    std::size_t sum = 0;
+    for (const PolygonEdges& polygon : polygons_) {
+      const Box<2>& box = polygon.box();
+      if (box.empty()) continue;
+      sum += (cell_of(box.hi[0], 0) - cell_of(box.lo[0], 0) + 1) *
+             (cell_of(box.hi[1], 1) - cell_of(box.lo[1], 1) + 1);
+    }
+    return sum;
+  };
+  while (cells_ > 1 && entries() > kMostCellsOfPolygon * polygons_.size()) cells_ /= 2;
   grid_.resize(cells_ * cells_);
   for (std::uint32_t p = 0; p < polygons_.size(); ++p) {
     const Box<2>& box = polygons_[p].box();

@@ -19,12 +19,15 @@ bool may_be_degrees(const std::string& crs, const std::optional<Box<3>>& extent)
                      extent->hi[1] <= 90);
 }
 
+/// Whether it may tell of heights.
+bool may_have_heights(const std::string& crs) { return is_compound_wkt(crs) || has(crs, "+"); }
+
 }  // namespace
 
 void tell_units(const std::string& crs, const std::optional<Box<3>>& extent,
                 const Context& context) {
   const auto& warn = context.options().warning;
-  if (!warn || crs.empty() || !(may_be_degrees(crs, extent) || is_compound_wkt(crs))) return;
+  if (!warn || crs.empty() || !(may_be_degrees(crs, extent) || may_have_heights(crs))) return;
   CrsUnits units;
   std::string name;
   try {

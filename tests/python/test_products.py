@@ -97,6 +97,8 @@ class Dem(InFolder):
                 "hills.las", "s_{n}.ply", tiles="sheet.csv", force_crs=True
             )
         self.assertEqual(report.outside_tiles, report.simplices)
+        with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "a side above 0"):
+            spillway.triangulate("hills.las", "{x}_{y}.ply", tiles=0)
         with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "a mesh is cut"):
             spillway.convert("hills.las", "{x}_{y}.las", tiles=100)
 

@@ -167,5 +167,27 @@ TEST(PolygonEdges, OfManyEdgesAreThoseOfACircle) {
   EXPECT_NEAR(length_of(chords.front()), 1.6, 1e-6);
 }
 
+/// Each edge of a comb is in all strips but for its back.
+TEST(PolygonEdges, OfTallEdgesAreFoundAsWell) {
+  constexpr int kTeeth = 5000;
+  Line ring;
+  for (int i = 0; i < kTeeth; ++i) {
+    ring.push_back({2.0 * i, 1});
+    ring.push_back({2.0 * i, 1000});
+    ring.push_back({2.0 * i + 1, 1000});
+    ring.push_back({2.0 * i + 1, 1});
+  }
+  ring.push_back({2.0 * kTeeth, 0});
+  ring.push_back({-1, 0});
+  const PolygonEdges comb(std::vector<Line>{ring});
+  std::mt19937 random(5);
+  for (int run = 0; run < 500; ++run) {
+    const int tooth = static_cast<int>(random() % (2 * kTeeth));
+    const double y = 2 + random() % 900;
+    EXPECT_EQ(comb.contains({tooth + 0.5, y}), tooth % 2 == 0) << tooth;
+  }
+  EXPECT_EQ(cut(comb, {{-5, 500}, {2.0 * kTeeth, 500}}).size(), std::size_t{kTeeth});
+}
+
 }  // namespace
 }  // namespace spillway::test

@@ -46,7 +46,7 @@ add_library(other_gdal_module MODULE tools/inputs/other_gdal_module.cpp)
 set_target_properties(other_gdal_module PROPERTIES PREFIX "" OUTPUT_NAME spillway_gdal
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/other_version)
 spillway_command_test(cli_input_tests cli
-  tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
+  tools/inputs/cli_clip_test.cpp tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
   tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
 
 spillway_command_test(cli_encoded_tests cli

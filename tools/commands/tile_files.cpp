@@ -38,6 +38,11 @@ void say_mesh_tiles(const Report& report, const std::string& output, ProgressLin
     progress.insist(fmt::format("warning: {} {} are in none of the tiles, and in no file",
                                 report.outside_tiles, simplices_of(report.dimension)));
   }
+  if (report.outside_vertices > 0) {
+    progress.insist(
+        fmt::format("warning: {} vertices belong to no simplex of a tile, and are in no file",
+                    report.outside_vertices));
+  }
   progress.say(
       fmt::format("{} tiles with {}", report.output_files, simplices_of(report.dimension)));
   warn_of_other_tiles(report.other_files, output, progress);

@@ -140,6 +140,7 @@ Json to_json(const TracedReport& report, const RunFacts& facts) {
   json["output_bytes"] = report.output_bytes;
   json["output_files"] = report.output_files;
   json["outside_tiles"] = report.outside_tiles;
+  json["outside_vertices"] = report.outside_vertices;
   json["other_files"] = report.other_files;
   json["on_lattice"] = report.on_lattice;
   json["points"] = mesh.points;

@@ -31,17 +31,21 @@ OGRPolygon polygon_of(const PolygonRings& rings) {
   return polygon;
 }
 
-/// Of rings in no order.
+/// Of rings in no order, by the even-odd rule where they cross or overlap.
 std::unique_ptr<OGRGeometry> area_of(const PolygonRings& rings) {
   std::vector<OGRGeometry*> polygons;
   for (const auto& ring : rings) {
+    if (ring.size() < 3) continue;
     auto polygon = std::make_unique<OGRPolygon>();
     polygon->addRingDirectly(ring_of(ring).release());
     polygons.push_back(polygon.release());
   }
+  if (polygons.empty()) return nullptr;
   int is_valid = FALSE;
-  return std::unique_ptr<OGRGeometry>(OGRGeometryFactory::organizePolygons(
+  std::unique_ptr<OGRGeometry> area(OGRGeometryFactory::organizePolygons(
       polygons.data(), static_cast<int>(polygons.size()), &is_valid, nullptr));
+  if (!area || area->IsValid() != 0) return area;
+  return std::unique_ptr<OGRGeometry>(area->MakeValid());
 }
 
 void add_polygons(const OGRGeometry& geometry, std::vector<PolygonRings>& polygons) {
@@ -70,7 +74,8 @@ std::vector<PolygonRings> clip_with_geos(const PolygonRings& polygon, const Poly
   forget_gdal_errors();
   const OGRPolygon whole = polygon_of(polygon);
   const std::unique_ptr<OGRGeometry> limits = area_of(area);
-  const std::unique_ptr<OGRGeometry> common(limits ? whole.Intersection(limits.get()) : nullptr);
+  if (!limits) return {};
+  const std::unique_ptr<OGRGeometry> common(whole.Intersection(limits.get()));
   if (!common) {
     throw Failure(fmt::format("a polygon cannot be cut: {}", gdal_reason()), ErrorCode::kBadInput);
   }

@@ -53,7 +53,9 @@ PolygonFeature buffer_of(OGRFeature& feature, double distance, const std::string
   PolygonFeature result;
   const OGRGeometry* const geometry = feature.GetGeometryRef();
   if (geometry == nullptr) return result;
-  const std::unique_ptr<OGRGeometry> buffer(geometry->Buffer(distance, kEdgesOfQuarterCircle));
+  const std::unique_ptr<OGRGeometry> closed(geometry->clone());
+  closed->closeRings();
+  const std::unique_ptr<OGRGeometry> buffer(closed->Buffer(distance, kEdgesOfQuarterCircle));
   if (!buffer || !add_rings(*buffer, result.rings)) {
     throw BadInput(path, fmt::format("feature {} has no buffer of {}: {}", feature.GetFID(),
                                      distance, gdal_reason()));

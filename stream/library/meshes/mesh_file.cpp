@@ -7,6 +7,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/disk/output_check.h"
 #include "formats/meshes/common/colour.h"
+#include "formats/meshes/create_mesh.h"
 #include "formats/meshes/mesh_formats.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/sma/sma_format.h"
@@ -58,7 +59,8 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
                           {.remedy = Remedy::kRanks});
   }
   if (tiling_) check_tiles();
-  if (target_.format == &kGpkgMesh) tell_lost_layers(kGeoPackage, target_.path, context);
+  if (!tiling_ && target_.format == &kGpkgMesh)
+    tell_lost_layers(kGeoPackage, target_.path, context);
 }
 
 void MeshFile::check_tiles() const {
@@ -121,6 +123,7 @@ std::uint64_t MeshFile::own_memory(std::uint64_t limit) const {
 
 BlockSink& MeshFile::open_writer() {
   if (tiling_) {
+    check_holds(*target_.format, target_.path, contents_of(header_));
     const std::uint64_t memory = own_memory(context().memory());
     return tiles_.emplace(header_, *tiling_, memory, *run_scratch_).blocks();
   }
@@ -165,6 +168,7 @@ void MeshFile::write_tiles(RunWatch& watch, Report& report) {
   report.output_bytes = written.bytes;
   report.output_files = written.paths.size();
   report.outside_tiles = tiles_->outside();
+  report.outside_vertices = report.mesh.vertices - tiles_->vertices();
   report.other_files = tiling_->others_than(std::move(written.paths));
   tiles_.reset();
 }

@@ -70,7 +70,7 @@ ContourFile::ContourFile(const std::string& path, const ContourOptions& options,
   }
   if (!writes_file_) return;
   check_can_create(path_);
-  tell_lost_layers(format_, path_, context);
+  if (!tiling_) tell_lost_layers(format_, path_, context);
 }
 
 std::uint64_t ContourFile::own_memory(std::uint64_t limit) const { return limit / kLineShare; }
@@ -176,18 +176,20 @@ void ContourFile::add_line(VectorLayer& layer, std::span<const Point<2>> points,
 /// Returns the bytes of all files.
 std::uint64_t ContourFile::write_tiles() {
   std::uint64_t bytes = 0;
-  std::vector<std::string> paths;
-  for (const std::size_t tile : pieces_->tiles()) {
+  const std::vector<std::size_t> tiles = pieces_->tiles();
+  std::vector<std::string> paths = tiling_->paths(tiles);
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
     VectorLayerOptions layer = layer_;
-    layer.path = paths.emplace_back(tiling_->path(tile));
+    layer.path = paths[t];
+    tell_lost_layers(format_, layer.path, context());
     VectorFile file(format_, std::move(layer));
-    RecordsByTile::Reader records(*pieces_, tile);
+    RecordsByTile::Reader records(*pieces_, tiles[t]);
     for (std::vector<std::byte> some; records.next(some);) write_pieces(file.layer(), some);
     file.finish();
     bytes += file.bytes();
   }
-  report_.files = paths.size();
-  report_.other_files = tiling_->others_than(paths);
+  report_.files = tiles.size();
+  report_.other_files = tiling_->others_than(std::move(paths));
   report_.spilled_bytes += pieces_->spilled_bytes();
   return bytes;
 }

@@ -78,6 +78,7 @@ std::uint32_t MeshDivider::number_in(std::size_t tile, std::uint32_t vertex,
   for (std::uint32_t at = heads_[vertex]; at != kNone; at = links_[at].next) {
     if (links_[at].place.tile == tile) return links_[at].place.number;
   }
+  if (heads_[vertex] == kNone) ++placed_;
   const std::uint32_t number = counts_[tile].vertices++;
   if (number == kNone) {
     throw Failure("a tile would have more than 4294967295 vertices: choose smaller tiles",

@@ -27,6 +27,8 @@ class MeshDivider final : public BlockSink {
 
   /// Of the mesh of a tile, by its number; all have come.
   [[nodiscard]] const TileCounts& counts(std::size_t tile) const { return counts_[tile]; }
+  /// Vertices that are in some tile, each counted once.
+  [[nodiscard]] std::uint64_t vertices() const { return placed_; }
   /// Simplices that are in no tile.
   [[nodiscard]] std::uint64_t outside() const { return outside_; }
 
@@ -66,6 +68,7 @@ class MeshDivider final : public BlockSink {
   std::vector<TileCounts> counts_;
   StreamVertices<Vertex> live_;
   std::uint64_t outside_ = 0;
+  std::uint64_t placed_ = 0;
   // Of a block, by short number.
   std::vector<Point<2>> points_;        ///< in output coordinates
   std::vector<std::uint32_t> heads_;    ///< of the chains of places

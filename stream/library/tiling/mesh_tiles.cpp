@@ -2,7 +2,9 @@
 
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_stream_writer.h"
+#include "formats/meshes/vector/vector_format.h"
 #include "stream/checker/checker.h"
+#include "stream/library/meshes/engine_sink.h"
 #include "stream/library/meshes/mesh_passage.h"
 
 namespace spillway::stream {
@@ -28,6 +30,7 @@ std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
     totals.canonical_hash = counted.canonical_hash;
     totals.hull_facets = counted.hull_facets;
   }
+  if (&format == &kGpkgMesh) tell_lost_layers(kGeoPackage, path, context);
   TileMesh mesh(header_, counts, records_, tile);
   const auto writer = open_mesh_stream_writer(disk(), path, format, mesh.header(), scratch_);
   pass_mesh(mesh, header_.attributes, *writer, watch, context.threads());
@@ -37,10 +40,10 @@ std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
 
 MeshTiles::Written MeshTiles::write(const MeshFormat& format, const Context& context,
                                     RunWatch& watch) {
-  Written written;
-  for (const std::size_t tile : records_.tiles()) {
-    const std::string& path = written.paths.emplace_back(tiling_.path(tile));
-    written.bytes += write_tile(tile, path, format, context, watch);
+  const std::vector<std::size_t> tiles = records_.tiles();
+  Written written{.bytes = 0, .paths = tiling_.paths(tiles)};
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    written.bytes += write_tile(tiles[t], written.paths[t], format, context, watch);
   }
   return written;
 }

@@ -35,6 +35,8 @@ class MeshTiles {
 
   /// Simplices that are in no tile.
   [[nodiscard]] std::uint64_t outside() const { return divider_.outside(); }
+  /// Vertices that are in some.
+  [[nodiscard]] std::uint64_t vertices() const { return divider_.vertices(); }
   [[nodiscard]] std::uint64_t spilled_bytes() const { return records_.spilled_bytes(); }
 
  private:

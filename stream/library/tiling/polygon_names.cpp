@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "formats/gdal/gdal.h"
@@ -68,6 +69,14 @@ NamedPolygons read_named_polygons(const std::string& pattern, const std::string&
                                            first->second, number, name));
     }
     named.paths.push_back(path.parent_path() / name);
+    std::error_code not_there;
+    if (name == "-" || std::filesystem::equivalent(named.paths.back(), polygons, not_there)) {
+      throw BadInput(polygons,
+                     fmt::format("the file of polygon {} would be {}, which is {}; choose "
+                                 "another name or field",
+                                 number, named.paths.back(),
+                                 name == "-" ? "standard output" : "that of polygons"));
+    }
     named.rings.push_back(std::move(polygon.rings));
   }
   return named;

@@ -34,8 +34,10 @@ void RecordsByTile::spill() {
   for (Tile& tile : tiles_) {
     const std::vector<std::byte> bytes = std::exchange(tile.latest, {});
     if (bytes.empty()) continue;
-    tile.spilled.push_back({file_->size(), bytes.size()});
+    const Batch batch{file_->size(), bytes.size()};
+    file_->append(std::as_bytes(std::span(&tile.spilled, 1)));
     file_->append(bytes);
+    tile.spilled = batch;
   }
   in_memory_ = 0;
 }
@@ -43,19 +45,27 @@ void RecordsByTile::spill() {
 std::vector<std::size_t> RecordsByTile::tiles() const {
   std::vector<std::size_t> numbers;
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
-    if (!tiles_[t].spilled.empty() || !tiles_[t].latest.empty()) numbers.push_back(t);
+    if (tiles_[t].spilled.bytes > 0 || !tiles_[t].latest.empty()) numbers.push_back(t);
   }
   return numbers;
 }
 
+RecordsByTile::Reader::Reader(const RecordsByTile& all, std::size_t tile)
+    : all_(all), tile_(all.tiles_[tile]) {
+  for (Batch batch = tile_.spilled; batch.bytes > 0;) {
+    spilled_.push_back(batch);
+    all_.file_->read(batch.offset, std::as_writable_bytes(std::span(&batch, 1)));
+  }
+}
+
 bool RecordsByTile::Reader::next(std::vector<std::byte>& bytes) {
-  if (batch_ < tile_.spilled.size()) {
-    const Batch& batch = tile_.spilled[batch_++];
-    bytes.resize(batch.bytes);
-    all_.file_->read(batch.offset, bytes);
+  if (!spilled_.empty()) {
+    bytes.resize(spilled_.back().bytes);
+    all_.file_->read(spilled_.back().offset + sizeof(Batch), bytes);
+    spilled_.pop_back();
     return true;
   }
-  if (batch_++ > tile_.spilled.size()) return false;
+  if (!std::exchange(has_latest_, false)) return false;
   bytes = tile_.latest;
   return !bytes.empty();
 }

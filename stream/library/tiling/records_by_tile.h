@@ -16,12 +16,13 @@ namespace spillway::stream {
 /// Tiles have numbers from 0 on.
 class RecordsByTile {
  private:
+  /// Where some records of a tile are in the file, behind the Batch of those before them.
   struct Batch {
     std::uint64_t offset = 0;
-    std::size_t bytes = 0;
+    std::uint64_t bytes = 0;  ///< 0: there are none
   };
   struct Tile {
-    std::vector<Batch> spilled;
+    Batch spilled;  ///< last
     std::vector<std::byte> latest;
   };
 
@@ -40,7 +41,7 @@ class RecordsByTile {
   class Reader {
    public:
     /// `all` must outlive it, and stay as it is.
-    Reader(const RecordsByTile& all, std::size_t tile) : all_(all), tile_(all.tiles_[tile]) {}
+    Reader(const RecordsByTile& all, std::size_t tile);
 
     /// Replaces `bytes` by some whole records; false at the end.
     bool next(std::vector<std::byte>& bytes);
@@ -48,7 +49,8 @@ class RecordsByTile {
    private:
     const RecordsByTile& all_;
     const Tile& tile_;
-    std::size_t batch_ = 0;
+    std::vector<Batch> spilled_;  ///< the next one is the last of these
+    bool has_latest_ = true;
   };
 
   [[nodiscard]] std::uint64_t spilled_bytes() const { return file_ ? file_->size() : 0; }

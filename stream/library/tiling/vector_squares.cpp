@@ -76,7 +76,14 @@ void VectorSquares::cut_polygon(const PolygonRings& polygon, const TakePart& tak
     (upper ? half.lo : half.hi)[axis] = edge;
     const PolygonRings area = {
         {half.lo, {half.hi[0], half.lo[1]}, half.hi, {half.lo[0], half.hi[1]}}};
-    for (const PolygonRings& part : gdal().clip(polygon, area)) cut_polygon(part, take);
+    for (PolygonRings& part : gdal().clip(polygon, area)) {
+      for (auto& ring : part) {
+        for (Point<2>& point : ring) {  // on the edge exactly, so that there is an end
+          point[axis] = upper ? std::max(point[axis], edge) : std::min(point[axis], edge);
+        }
+      }
+      cut_polygon(part, take);
+    }
   }
 }
 

@@ -139,6 +139,24 @@ TEST_F(VectorTiles, OfSquaresAndPolygonsHaveTheBandsThatLieInThem) {
   EXPECT_NEAR(hole, 100, 1e-6);
 }
 
+TEST_F(VectorTiles, OfPolygonsThatCrossThemselvesHaveBandsByTheEvenOddRule) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  work_.write("bow.csv",
+              "name,WKT\n"
+              "bow,\"POLYGON ((500060 4100100,500160 4100200,500160 4100100,500060 4100200,500060 "
+              "4100100))\"\n"
+              "twice,\"MULTIPOLYGON (((500060 4100100,500120 4100100,500120 4100150,500060 "
+              "4100150,500060 4100100)),((500100 4100120,500160 4100120,500160 4100200,500100 "
+              "4100200,500100 4100120)))\"\n");
+  make("contour in.las --interval 3 --bands -o 'b_{name}.gpkg' --tiles bow.csv");
+  for (const auto& [name, area] : {std::pair("bow", 5000.0), std::pair("twice", 6600.0)}) {
+    double sum = 0;
+    const Sums bands = sums(fmt::format("b_{}.gpkg", name), "ST_Area", "\\\"min\\\"");
+    for (const auto& [height, part] : bands.by_height) sum += part;
+    EXPECT_NEAR(sum, area, 1e-6) << name;
+  }
+}
+
 TEST_F(VectorTiles, OfAMeshAreMadeOfPointsOrOfTheMesh) {
   if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
   const auto stats =
@@ -190,6 +208,12 @@ TEST_F(VectorTiles, AreRefusedWhereTheyCannotBe) {
               HasSubstr("its polygons have no field \"no\""));
   EXPECT_THAT(refused("triangulate in.las -o 'l_{name}.ply' --tiles missing.gpkg"),
               HasSubstr("missing.gpkg"));
+  work_.write("own.csv", "name,WKT\nown,\"POLYGON ((0 0,1 0,1 1,0 0))\"\n");
+  EXPECT_THAT(refused("triangulate in.las -o '{name}.csv' --output-format obj --tiles own.csv"),
+              HasSubstr("which is that of polygons"));
+  work_.write("pipe.csv", "name,WKT\n-,\"POLYGON ((0 0,1 0,1 1,0 0))\"\n");
+  EXPECT_THAT(refused("triangulate in.las -o '{name}' --output-format obj --tiles pipe.csv"),
+              HasSubstr("standard output"));
   work_.succeed("spillway convert in.las -o zone34.las --crs EPSG:32634 --force-crs");
   EXPECT_THAT(refused("triangulate zone34.las -o 'l_{name}.ply' --tiles sheets.geojson"),
               HasSubstr("sheets.geojson"));

@@ -232,6 +232,48 @@ TEST_F(MeshTiles, TellOfFilesThatAnotherRunLeft) {
   EXPECT_EQ(report.other_files, std::vector<std::string>{file("t_7000_7000.obj")});
 }
 
+TEST_F(MeshTiles, TellOfVerticesWithoutASimplex) {
+  const Context context(options());
+  MeshFileOptions tiled;
+  tiled.tile_side = 250;
+  const Report report =
+      send(random_points(3000, 9), *create_mesh(file("{x}_{y}.spm"), tiled, context), context,
+           {.max_edge = 20});
+  std::set<Point<3>> placed;
+  for (const auto& [name, path] : files(".spm")) {
+    MeshInMemory mesh;
+    read(path, mesh, context);
+    placed.insert(mesh.vertices().begin(), mesh.vertices().end());
+  }
+  EXPECT_GT(report.outside_vertices, 0U);
+  EXPECT_EQ(report.outside_vertices, report.mesh.vertices - placed.size());
+}
+
+/// Before points are read, and not when the first tile is written.
+TEST_F(MeshTiles, RefuseAFormatThatCannotHoldThemAtOnce) {
+  const Context context(options());
+  MeshFileOptions tiled;
+  tiled.tile_side = 500;
+  EXPECT_EQ(code_of([&] {
+              send(random_points(1000, 10), *create_mesh(file("{x}_{y}.obj"), tiled, context),
+                   context, {.input_index = true});
+            }),
+            ErrorCode::kInvalidArgument);
+  EXPECT_THAT(phases_, ::testing::Not(::testing::Contains("triangulate")));
+}
+
+TEST_F(MeshTiles, OfOneNameAreRefused) {
+  std::vector<Point<3>> points;
+  for (int i = 0; i < 40; ++i) points.push_back({3e14 + 0.25 * i, 0.25 * (i % 7), 0});
+  const Context context(options());
+  MeshFileOptions tiled;
+  tiled.tile_side = 0.5;
+  EXPECT_EQ(
+      code_of([&] { send(points, *create_mesh(file("{x}_{y}.ply"), tiled, context), context); }),
+      ErrorCode::kInvalidArgument);
+  EXPECT_THAT(files(".ply"), IsEmpty());
+}
+
 TEST_F(MeshTiles, RefuseWhatTheyCannotBe) {
   ContextOptions little = options();
   little.memory = "64M";
