@@ -4,6 +4,9 @@
 #include <spillway/check.h>
 #include <spillway/info.h>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +43,15 @@ void add_lattice(const std::optional<LatticeInfo>& lattice, py::dict& statistics
   statistics["offset"] = lattice ? py::object(triple_of(lattice->offset)) : py::none();
 }
 
+/// Of each number that there is, how many points are of it.
+py::dict counts_of(const std::vector<std::uint64_t>& counts) {
+  py::dict all;
+  for (std::size_t number = 0; number < counts.size(); ++number) {
+    if (counts[number] > 0) all[py::int_(number)] = counts[number];
+  }
+  return all;
+}
+
 py::dict points_info(Run& run, const std::string& path, const PointOptions& options) {
   PointsInfo info;
   run.expect(kPhasesOfInfo);
@@ -61,7 +73,15 @@ py::dict points_info(Run& run, const std::string& path, const PointOptions& opti
   statistics["crs_note"] = text_or_none(info.crs_note);
   statistics["software"] = text_or_none(info.software);
   statistics["cells"] = info.cells;
-  statistics["attributes"] = statistics_of(info.attributes);
+  statistics["classes"] = counts_of(info.classes);
+  statistics["returns"] = counts_of(info.returns);
+  py::list attributes = statistics_of(info.attributes);
+  for (std::size_t a = 0; a < info.ranges.size(); ++a) {
+    if (std::isnan(info.ranges[a][0])) continue;
+    attributes[a]["min"] = info.ranges[a][0];
+    attributes[a]["max"] = info.ranges[a][1];
+  }
+  statistics["attributes"] = attributes;
   return statistics;
 }
 

@@ -31,6 +31,7 @@ struct PointsInfo {
   int point_format = -1;  ///< of LAS; -1: of no LAS
   int coordinates = 3;    ///< 2: there is no z
   PointCounts counts{};
+  std::optional<std::uint64_t> header_points{};  ///< records, as the header counts them
   std::optional<Extent> extent{};        ///< of the points that are kept; none if there are none
   std::optional<LatticeInfo> lattice{};  ///< that the file says its coordinates are on
   std::string crs{};
@@ -44,11 +45,24 @@ struct PointsInfo {
   /// it is false if there are any.
   std::uint64_t points_outside = 0;
   std::vector<Attribute> attributes{};  ///< what the points carry
+  /// By attribute: least and greatest value of the points that are kept, in the attribute's unit;
+  /// two NaN where there is none. Empty where no points were read.
+  std::vector<std::array<double, 2>> ranges{};
+  /// How many of these points are of class 0 to 255; empty if they have none.
+  std::vector<std::uint64_t> classes{};
+  /// Likewise of return 0 to 255 of their pulse.
+  std::vector<std::uint64_t> returns{};
 };
 
 /// Reads all points of a file that the options ask for, so that counts and extent are exact
 /// whatever the header says. Throws as open_points() and PointSource::read().
 SPILLWAY_API PointsInfo describe_points(const std::string& path, const PointOptions& options,
+                                        const Context& context);
+
+/// What the header of a point file tells, without reading points: as describe_points() gives it,
+/// where it tells; the extent is that of the header, which may be false, and nothing is counted.
+/// Filters are not looked at. Throws as open_points().
+SPILLWAY_API PointsInfo describe_header(const std::string& path, const PointOptions& options,
                                         const Context& context);
 
 /// What a mesh holds.

@@ -91,6 +91,15 @@ struct PointOptions {
   /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
   /// names, or, where these are missing, the first ones.
   std::vector<int> columns{};
+  /// Of text, instead: the names of the columns of x, y and, if there is a third one, z, as they
+  /// stand in its header, in any case of letters.
+  std::vector<std::string> column_names{};
+  std::uint64_t skip_lines = 0;  ///< of text: lines before the first one that is looked at
+  /// Of text: what separates columns, a comma, a semicolon, a tab, or a blank for any blanks and
+  /// tabs; 0: as the text shows.
+  char separator = 0;
+  char decimal = 0;        ///< of text: the decimal sign, a point or a comma; 0: as the text shows
+  bool no_header = false;  ///< of text: the first line is a row, and comments name no columns
   /// Leave out and count rows of text, npy and PLY that are no points: what is no number, or not
   /// finite, or lacks a column. Without it they are an error.
   bool skip_invalid = false;

@@ -42,7 +42,11 @@ class FilterOptions(TypedDict, total=False):
     """How point files are read, and which of their points."""
 
     input_format: str | None
-    columns: Sequence[int] | None
+    columns: Sequence[int] | Sequence[str] | None
+    skip_lines: int | None
+    separator: str | None
+    decimal: str | None
+    no_header: bool
     skip_invalid: bool
     salvage: bool
     keep_withheld: bool
@@ -171,6 +175,16 @@ def _put_returns(target: Any, value: Any) -> None:
     target.set_returns("first" in words, "last" in words, "single" in words, counted)
 
 
+def _put_columns(target: Any, value: Any) -> None:
+    if isinstance(value, str):
+        raise InvalidArgumentError(f"columns is {value!r}; give the columns one by one")
+    columns = list(value)
+    if columns and all(isinstance(column, str) for column in columns):
+        target.column_names = columns
+    else:
+        target.columns = _as_list(columns)
+
+
 def _as_list(value: Any) -> list[int]:
     return [operator.index(n) for n in (value if isinstance(value, Iterable) else [value])]
 
@@ -249,10 +263,34 @@ _OPTIONS = {
         attribute("format"),
     ),
     "columns": _Option(
-        "sequence of int, optional",
-        "Of text, the columns of x, y and z, counted from 1.",
+        "sequence of int or of str, optional",
+        "Of text, the columns of x, y and z, counted from 1, or their names.",
         "points",
-        attribute("columns", _as_list),
+        _put_columns,
+    ),
+    "skip_lines": _Option(
+        "int, optional",
+        "Of text, leave out so many lines at the top.",
+        "points",
+        attribute("skip_lines"),
+    ),
+    "separator": _Option(
+        "str, optional",
+        'Of text, what separates columns: ``","``, ``";"``, a tab or a blank, for any blanks.',
+        "points",
+        attribute("separator"),
+    ),
+    "decimal": _Option(
+        "str, optional",
+        'Of text, the decimal sign, ``"."`` or ``","``.',
+        "points",
+        attribute("decimal"),
+    ),
+    "no_header": _Option(
+        "bool, optional",
+        "Of text, the first line is a row, and comments name no columns.",
+        "points",
+        attribute("no_header"),
     ),
     "skip_invalid": _Option(
         "bool, optional",

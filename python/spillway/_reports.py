@@ -289,7 +289,8 @@ class PointsInfo(_Report):
     """What a point file holds. What it does not tell is None; boxes are (lowest, highest) corners.
 
     `attributes` is what points carry, as in the JSON of ``spillway info``: dicts with "name" and
-    "type", and what else there is to say.
+    "type", "min" and "max" where there are values, and what else there is to say. `classes` and
+    `returns` tell how many points are of each of these numbers.
     """
 
     format: str
@@ -307,6 +308,8 @@ class PointsInfo(_Report):
     crs_note: Optional[str]
     software: Optional[str]
     cells: Optional[int]
+    classes: dict[int, int]
+    returns: dict[int, int]
     attributes: list[dict[str, Any]]
 
     def _summary(self) -> str:

@@ -63,6 +63,11 @@ class PointOptions:
     dimension: int
     format: str
     columns: list[int]
+    column_names: list[str]
+    skip_lines: int
+    separator: str
+    decimal: str
+    no_header: bool
     skip_invalid: bool
     salvage: bool
     skip_broken: bool

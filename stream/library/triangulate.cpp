@@ -143,7 +143,8 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .scratch = context.state().scratch(context)};
   run.engine.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
-  tell_units(run.points.crs, run.points.extent, context);
+  // Rasters and the like have their own ways with units.
+  if (!target->is_product()) tell_units(run.points.crs, run.points.extent, context);
   target->check_attributes(run.points.offered);
   // Processes share points out as they triangulate them.
   if (!target->wants_simplices() && executor == nullptr) {

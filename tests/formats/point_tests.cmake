@@ -20,6 +20,7 @@ spillway_test(points_test unit
     formats/points/invalid_rows_test.cpp
     formats/points/point_format_test.cpp
     formats/points/point_writer_test.cpp
+    formats/points/text/headings_test.cpp
     formats/points/text/pts_test.cpp
     formats/points/text/text_columns_test.cpp
     formats/points/text/text_reader_test.cpp

@@ -454,10 +454,11 @@ Subcommand add_batch(CommandLine& root) {
       .show_default();
   add_report_options(app, options->report);
   add_options_of_subcommands(root, app, *options);
-  return {&app, [options, &root, &app] {
-            if (!options->resume) refuse_given(app, {"--checkpoint-every"}, "without --resume");
-            return Batch(root, *options).run();
-          }};
+  const auto run = [options, &root, &app] {
+    if (!options->resume) refuse_given(app, {"--checkpoint-every"}, "without --resume");
+    return Batch(root, *options).run();
+  };
+  return {&app, run, false, true};
 }
 
 }  // namespace spillway::command

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -96,7 +97,20 @@ class CommandTree {
  public:
   explicit CommandTree(std::span<const AddSubcommand> table) {
     root_.set_footer(kExamples);
-    for (const AddSubcommand add : table) subcommands_.push_back(add(root_));
+    for (const AddSubcommand add : table) {
+      subcommands_.push_back(add(root_));
+      added_by_.push_back(add);
+    }
+  }
+
+  /// What adds the given subcommand, if that needs no others; null otherwise.
+  [[nodiscard]] AddSubcommand given_alone() const {
+    for (std::size_t s = 0; s < subcommands_.size(); ++s) {
+      const Subcommand& subcommand = subcommands_[s];
+      if (subcommand.app != root_.given_subcommand()) continue;
+      return subcommand.needs_others ? nullptr : added_by_[s];
+    }
+    return nullptr;
   }
 
   [[nodiscard]] CommandLine& root() { return root_; }
@@ -120,6 +134,7 @@ class CommandTree {
  private:
   CommandLine root_{"spillway", kDescription, version_text()};
   std::vector<Subcommand> subcommands_;
+  std::vector<AddSubcommand> added_by_;  ///< each of them
 };
 
 }  // namespace
@@ -135,8 +150,8 @@ void check_command_line(const std::vector<std::string>& arguments) {
 }
 
 int run_command(int argc, const char* const* argv, std::span<const AddSubcommand> table) {
-  CommandTree tree(table);
-  CommandLine& root = tree.root();
+  auto tree = std::make_unique<CommandTree>(table);
+  CommandLine& root = tree->root();
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) {
     write_to_standard_error(root.help());
@@ -150,9 +165,10 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
     if (of_itself) words.erase(words.begin());
     words.emplace_back("--help");
   }
+  words = with_present_names(std::move(words));
   Request request{};
   try {
-    request = root.parse(with_present_names(std::move(words)));
+    request = root.parse(words);
   } catch (const ArgumentError& error) {
     throw usage_error(root, error.what());
   }
@@ -171,8 +187,13 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
       break;
   }
   refuse_empty_values(root);
+  // Options of the others would take memory all along.
+  if (const AddSubcommand given = tree->given_alone()) {
+    tree = std::make_unique<CommandTree>(std::span(&given, 1));
+    tree->root().parse(words);
+  }
   let_go_of_program_pages();
-  return tree.run();
+  return tree->run();
 }
 
 }  // namespace spillway::command

@@ -13,8 +13,9 @@ namespace spillway::command {
 /// A subcommand in the tree of options, and what to do once the command line is parsed.
 struct Subcommand {
   CommandLine* app;
-  std::function<int()> run;  ///< returns the exit code
-  bool over_ranks = false;   ///< works together with the other processes of mpirun
+  std::function<int()> run;   ///< returns the exit code
+  bool over_ranks = false;    ///< works together with the other processes of mpirun
+  bool needs_others = false;  ///< looks at the options of other subcommands
 };
 
 /// Adds a subcommand to the tree.

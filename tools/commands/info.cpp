@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -31,14 +33,17 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  spillway info survey.las\n"
     "  spillway info *.las tin.ply --json | jq .canonical_hash\n"
+    "  spillway info --fast 'tiles/*.laz'\n"
     "  spillway generate terrain -n 1e8 | spillway triangulate - -o - | spillway info -\n"
-    "All points are read, so extents and counts are exact, whatever headers say;\n"
-    "points_outside tells how many lie outside of the box that the header tells.";
+    "All points are read, so extents and counts are exact, whatever headers say; points_outside\n"
+    "tells how many lie outside of the box that the header tells. After several files of points\n"
+    "comes their total.";
 
 struct InfoOptions {
   const CommandLine* app = nullptr;
   std::vector<std::string> files;
   bool json = false;
+  bool fast = false;
   InputOptions input;
   MemoryOptions memory;
   ReportOptions report;
@@ -82,13 +87,90 @@ Json attribute_json(const Attribute& attribute) {
   return json;
 }
 
-Json attributes_json(const std::vector<Attribute>& attributes) {
+Json attributes_json(const std::vector<Attribute>& attributes,
+                     const std::vector<std::array<double, 2>>& ranges = {}) {
   Json json = Json::array();
-  for (const Attribute& attribute : attributes) json.push_back(attribute_json(attribute));
+  for (std::size_t a = 0; a < attributes.size(); ++a) {
+    Json attribute = attribute_json(attributes[a]);
+    if (!ranges.empty() && !std::isnan(ranges[a][0])) {
+      attribute["min"] = ranges[a][0];
+      attribute["max"] = ranges[a][1];
+    }
+    json.push_back(attribute);
+  }
   return json;
 }
 
-Json points_json(const std::string& path, const PointsInfo& info, bool filtered) {
+/// {"2": 5000, "6": 300}: of each number that there is, how many points are of it; null without.
+Json counts_json(const std::vector<std::uint64_t>& counts) {
+  Json json;
+  for (std::size_t number = 0; number < counts.size(); ++number) {
+    if (counts[number] > 0) json[std::to_string(number)] = counts[number];
+  }
+  return json;
+}
+
+/// The mean distance of neighbours, if points lay on a grid over the extent.
+Json spacing(const std::optional<Extent>& extent, std::uint64_t points) {
+  const Json per_area = density(extent, points);
+  return per_area.is_number() && points > 0 ? Json(1 / std::sqrt(per_area.number()))
+                                            : Json(nullptr);
+}
+
+/// What several files of points hold together. Files that were told of by their headers alone have
+/// the points that these count.
+class Total {
+ public:
+  void add(const PointsInfo& info, bool fast) {
+    ++files_;
+    points_ += fast ? info.header_points.value_or(0) : info.counts.kept();
+    is_known_ = is_known_ && (!fast || info.header_points);
+    coordinates_ = std::max(coordinates_, info.coordinates);
+    add_counts(info.classes, classes_);
+    add_counts(info.returns, returns_);
+    if (!info.extent) return;
+    if (!extent_) extent_ = info.extent;
+    for (std::size_t k = 0; k < 3; ++k) {
+      extent_->low[k] = std::min(extent_->low[k], info.extent->low[k]);
+      extent_->high[k] = std::max(extent_->high[k], info.extent->high[k]);
+    }
+  }
+
+  [[nodiscard]] std::size_t files() const { return files_; }
+
+  [[nodiscard]] Json json() const {
+    Json json;
+    json["name"] = "total";
+    json["kind"] = "total";
+    json["files"] = files_;
+    json["points"] = is_known_ ? Json(points_) : Json(nullptr);
+    json["extent"] = extent_json(extent_, coordinates_);
+    json["density"] = density(extent_, points_);
+    json["spacing"] = spacing(extent_, points_);
+    json["classes"] = counts_json(classes_);
+    json["returns"] = counts_json(returns_);
+    return json;
+  }
+
+ private:
+  static void add_counts(const std::vector<std::uint64_t>& more,
+                         std::vector<std::uint64_t>& counts) {
+    counts.resize(std::max(counts.size(), more.size()));
+    for (std::size_t number = 0; number < more.size(); ++number) counts[number] += more[number];
+  }
+
+  std::size_t files_ = 0;
+  std::uint64_t points_ = 0;
+  bool is_known_ = true;
+  int coordinates_ = 2;
+  std::optional<Extent> extent_;
+  std::vector<std::uint64_t> classes_;
+  std::vector<std::uint64_t> returns_;
+};
+
+/// `fast`: of the header alone.
+Json points_json(const std::string& path, const PointsInfo& info, bool filtered, bool fast) {
+  const std::uint64_t points = fast ? info.header_points.value_or(0) : info.counts.kept();
   Json json;
   json["name"] = path;
   json["kind"] = "points";
@@ -96,20 +178,23 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered)
   json["version"] = text_or_null(info.version);
   json["point_format"] = info.point_format < 0 ? Json(nullptr) : Json(info.point_format);
   json["coordinates"] = info.coordinates;
-  json["points"] = info.counts.kept();
-  json["withheld"] = info.counts.withheld;
+  json["points"] = fast && !info.header_points ? Json(nullptr) : Json(points);
+  json["withheld"] = fast ? Json(nullptr) : Json(info.counts.withheld);
   json["lost"] = info.counts.lost;
   json["filters"] = filtered ? to_json(info.counts) : Json(nullptr);
   json["extent"] = extent_json(info.extent, info.coordinates);
   json["header_box"] = extent_json(info.header_box, info.coordinates);
-  json["points_outside"] = info.header_box ? Json(info.points_outside) : Json(nullptr);
+  json["points_outside"] = info.header_box && !fast ? Json(info.points_outside) : Json(nullptr);
   add_lattice(info.lattice, json);
-  json["density"] = density(info.extent, info.counts.kept());
+  json["density"] = density(info.extent, points);
+  json["spacing"] = spacing(info.extent, points);
   json["crs"] = text_or_null(info.crs);
   json["crs_note"] = text_or_null(info.crs_note);
   json["software"] = text_or_null(info.software);
   if (info.cells) json["cells"] = *info.cells;
-  json["attributes"] = attributes_json(info.attributes);
+  json["classes"] = counts_json(info.classes);
+  json["returns"] = counts_json(info.returns);
+  json["attributes"] = attributes_json(info.attributes, info.ranges);
   return json;
 }
 
@@ -153,12 +238,16 @@ InputKind kind_of(const std::string& path, const InfoOptions& options, const Con
   return told ? InputKind::kPoints : kind_of_input(path, context);
 }
 
-Json describe_input(const std::string& path, const InfoOptions& options, const Context& context) {
+Json describe_input(const std::string& path, const InfoOptions& options, const Context& context,
+                    Total& total) {
   if (kind_of(path, options, context) == InputKind::kMesh) {
     return mesh_json(path, describe_mesh(path, {}, context));
   }
   const PointOptions how = point_options(options.input, 2);
-  return points_json(path, describe_points(path, how, context), options.input.filters());
+  const PointsInfo info =
+      options.fast ? describe_header(path, how, context) : describe_points(path, how, context);
+  total.add(info, options.fast);
+  return points_json(path, info, options.input.filters(), options.fast);
 }
 
 std::string value_text(const Json& value) {
@@ -191,7 +280,12 @@ std::string describe(const Json& json) {
   std::string text = printable(json.find("name")->text()) + "\n";
   for (const auto& [key, value] : json.members()) {
     if (key == "name") continue;
-    if (value.is_object()) {
+    if (value.is_object() && (key == "classes" || key == "returns")) {
+      text += fmt::format("  {}\n", key);
+      for (const auto& [number, count] : value.members()) {
+        text += fmt::format("    {:22} {}\n", number, value_text(count));
+      }
+    } else if (value.is_object()) {
       for (const auto& [inner_key, inner_value] : value.members()) {
         const std::string path = fmt::format("{} {}", key, inner_key);
         text += fmt::format("  {:16} {}\n", path, value_text(inner_value));
@@ -203,7 +297,7 @@ std::string describe(const Json& json) {
                             attribute_text(attribute));
       }
     } else {
-      const bool estimate = key == "density" && value.is_number();
+      const bool estimate = (key == "density" || key == "spacing") && value.is_number();
       text += fmt::format("  {:16} {}\n", key,
                           estimate ? fmt::format("{:.6g}", value.number()) : value_text(value));
     }
@@ -222,9 +316,10 @@ void add_common_keys(double seconds, Json& json) {
   json["seconds"] = seconds;
 }
 
-void tell(const std::string& path, const InfoOptions& options, const Context& context) {
+void tell(const std::string& path, const InfoOptions& options, const Context& context,
+          Total& total) {
   const auto start = std::chrono::steady_clock::now();
-  Json json = describe_input(path, options, context);
+  Json json = describe_input(path, options, context, total);
   if (options.json) {
     add_common_keys(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
                     json);
@@ -260,10 +355,19 @@ int run(const InfoOptions& options) {
   if (!given_options(*options.app, kInputOptionNames).empty()) {
     check_point_options(paths, options, context);
   }
+  if (options.fast) {
+    std::vector<std::string_view> filters(kInputOptionNames.begin(), kInputOptionNames.end());
+    std::erase_if(filters, [](std::string_view name) {
+      return name == "--input-format" || name == "--columns" || name == "--skip-lines" ||
+             name == "--separator" || name == "--decimal" || name == "--no-header";
+    });
+    refuse_given(*options.app, filters, "with --fast, which reads no points");
+  }
+  Total total;
   int exit_code = kExitDone;
   for (const std::string& path : paths) {
     try {
-      tell(path, options, context);
+      tell(path, options, context, total);
     } catch (const InvalidArgument&) {
       throw;
     } catch (const ClosedPipe&) {
@@ -274,6 +378,9 @@ int run(const InfoOptions& options) {
       if (paths.size() == 1) throw;
       exit_code = report_error(error, kExitFailed);
     }
+  }
+  if (total.files() > 1) {
+    write_text("-", options.json ? json_text(total.json()) + "\n" : describe(total.json()));
   }
   return exit_code;
 }
@@ -289,6 +396,7 @@ Subcommand add_info(CommandLine& root) {
                  "Point files and meshes; - is points or a mesh stream from a pipe")
       .required();
   app.add_flag("--json", options->json, "One JSON object a line for each file");
+  app.add_flag("--fast", options->fast, "Of points, tell what headers tell, and read no points");
   add_input_options(app, options->input);
   app.remove_option("--crs");
   app.remove_option("--force-crs");    // each file is told of for itself,

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
 #include <system_error>
 
 #include "formats/bytes/bytes.h"
@@ -53,9 +54,26 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, if neither name nor first bytes tell it");
   take_parsed(app.add_option("--columns", options.columns,
-                             "Of text, the columns of x, y, z: as 3,2,4, or as PNEZD")
+                             "Of text, the columns of x, y, z: as 3,2,4, as PNEZD, or by names as "
+                             "Easting,Northing,Height")
                   .value_name("LIST"),
-              parse_columns);
+              [](const std::string& text) {
+                if (parse_column_names(text).empty()) parse_columns(text);
+              });
+  take_whole_number(app.add_option("--skip-lines", options.skip_lines,
+                                   "Of text, leave out so many lines at the top"),
+                    0)
+      .value_name("N");
+  take_parsed(app.add_option("--separator", options.separator,
+                             "Of text, what separates columns: comma, semicolon, tab or blanks")
+                  .value_name("SIGN"),
+              parse_separator);
+  take_parsed(
+      app.add_option("--decimal", options.decimal, "Of text, the decimal sign: point or comma")
+          .value_name("SIGN"),
+      parse_decimal);
+  app.add_flag("--no-header", options.no_header,
+               "Of text, the first line is a row, and comments name no columns");
   take_parsed(
       app.add_option("--crs", options.crs,
                      "Coordinate system of inputs that name none: EPSG:n, WKT, or a file with WKT"),
@@ -125,6 +143,49 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   app.add_flag("--skip-broken", options.skip_broken,
                "Leave out files that cannot be read; name them at the end, with exit code 1")
       .group(group);
+}
+
+std::vector<std::string> parse_column_names(std::string_view text) {
+  const std::vector<std::string_view> parts = split(text, ',');
+  const auto is_number = [](std::string_view part) {
+    return number_of<std::uint64_t>(part).has_value();
+  };
+  if (parts.size() < 2 || std::ranges::any_of(parts, is_number)) return {};
+  const bool valid = parts.size() <= 3 && std::ranges::none_of(parts, &std::string_view::empty);
+  if (!valid) {
+    throw UsageError(fmt::format(
+        "\"{}\" does not name columns; give the names of x, y and z, or of x and y", text));
+  }
+  return {parts.begin(), parts.end()};
+}
+
+namespace {
+
+struct Sign {
+  std::string_view name;
+  char sign;
+};
+
+char sign_of(std::string_view text, std::span<const Sign> signs) {
+  std::string names;
+  for (const Sign& sign : signs) {
+    if (text == sign.name || text == std::string_view(&sign.sign, 1)) return sign.sign;
+    names += (names.empty() ? "" : ", ") + std::string(sign.name);
+  }
+  throw UsageError(fmt::format("\"{}\" is none of these: {}", text, names));
+}
+
+}  // namespace
+
+char parse_separator(std::string_view text) {
+  constexpr std::array<Sign, 4> kSigns = {
+      {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blanks", ' '}}};
+  return sign_of(text, kSigns);
+}
+
+char parse_decimal(std::string_view text) {
+  constexpr std::array<Sign, 2> kSigns = {{{"point", '.'}, {"comma", ','}}};
+  return sign_of(text, kSigns);
 }
 
 std::vector<int> parse_columns(std::string_view text) {
@@ -294,7 +355,14 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
   points.format = options.format;
-  if (!options.columns.empty()) points.columns = parse_columns(options.columns);
+  if (!options.columns.empty()) {
+    points.column_names = parse_column_names(options.columns);
+    if (points.column_names.empty()) points.columns = parse_columns(options.columns);
+  }
+  points.skip_lines = options.skip_lines;
+  if (!options.separator.empty()) points.separator = parse_separator(options.separator);
+  if (!options.decimal.empty()) points.decimal = parse_decimal(options.decimal);
+  points.no_header = options.no_header;
   points.skip_invalid = options.skip_invalid;
   points.salvage = options.salvage;
   points.skip_broken = options.skip_broken;

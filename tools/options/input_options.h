@@ -18,6 +18,10 @@ namespace spillway::command {
 struct InputOptions {
   std::string format;
   std::string columns;
+  std::uint64_t skip_lines = 0;
+  std::string separator;
+  std::string decimal;
+  bool no_header = false;
   std::string crs;
   bool force_crs = false;
   std::string to_crs;
@@ -44,12 +48,13 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 22> kInputOptionNames = {
-    "--input-format", "--columns",      "--crs",         "--force-crs",     "--to-crs",
-    "--multiply-z",   "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",
-    "--keep-class",   "--drop-class",   "--returns",     "--where",         "--bounds",
-    "--z-range",      "--clip",         "--clip-buffer", "--clip-outside",  "--thin",
-    "--resolution",   "--salvage"};
+inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
+    "--skip-lines",   "--separator",   "--decimal",       "--no-header", "--input-format",
+    "--columns",      "--crs",         "--force-crs",     "--to-crs",    "--multiply-z",
+    "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",     "--keep-class",
+    "--drop-class",   "--returns",     "--where",         "--bounds",    "--z-range",
+    "--clip",         "--clip-buffer", "--clip-outside",  "--thin",      "--resolution",
+    "--salvage"};
 
 /// The heading in help of the options that are filters.
 
@@ -68,6 +73,14 @@ MeshOptions mesh_options(const InputOptions& options, const std::string& format)
 /// Reads the value of --crs: a code or WKT as it is, or what stands in the file that it names. This
 /// and what follows throws UsageError that says what is expected, for take_parsed().
 std::string parse_crs(std::string_view text);
+
+/// Reads the value of --columns where it has names, "Easting,Northing,Height"; none if it has
+/// numbers or letters, for parse_columns().
+std::vector<std::string> parse_column_names(std::string_view text);
+
+/// Reads the values of --separator and --decimal: a sign, or its name.
+char parse_separator(std::string_view text);
+char parse_decimal(std::string_view text);
 
 /// Reads the value of --z-range: the lowest and the highest height.
 std::array<double, 2> parse_z_range(std::string_view text);

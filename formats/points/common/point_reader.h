@@ -14,6 +14,7 @@
 #include "formats/disk/file_system.h"
 #include "formats/gdal/geotiff_key_records.h"
 #include "formats/points/attributes/attribute_layout.h"
+#include "formats/points/common/text_layout.h"
 #include "src/geometry/box.h"
 #include "src/geometry/framed_point.h"
 #include "src/geometry/lattice.h"
@@ -148,8 +149,7 @@ struct PointReaderOptions {
   std::optional<Box<3>> bounds{};
   /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
   double resolution = 0;
-  /// Of text: the columns of x, y and z, counted from 0; that of z is -1 where there is none.
-  std::optional<std::array<int, 3>> columns{};
+  TextLayout text{};  ///< of text
   /// Of text, npy and PLY: leave out and count rows that are no points.
   bool skip_invalid = false;
   /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those

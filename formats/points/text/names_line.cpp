@@ -17,12 +17,6 @@ bool occurs(Separator separator, std::string_view line) {
          });
 }
 
-NamesLine read_names(std::string_view line, Separator separator) {
-  NamesLine result{separator, text_names(line, separator), {}};
-  result.choice = choose_columns(result.names);
-  return result;
-}
-
 /// Without words in brackets, as the units in "x [m] y [m]".
 std::string without_brackets(std::string_view text) {
   std::string result;
@@ -70,6 +64,12 @@ std::string_view text_of_comment(std::string_view line) {
     line = trimmed(line.substr(line.starts_with("//") ? 2 : 1));
   }
   return line;
+}
+
+NamesLine read_names(std::string_view line, Separator separator) {
+  NamesLine result{separator, text_names(line, separator), {}};
+  result.choice = choose_columns(result.names);
+  return result;
 }
 
 NamesLine read_names(std::string_view line) {

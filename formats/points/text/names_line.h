@@ -35,6 +35,8 @@ struct NamesLine {
 
 /// With the first separator that makes sense of the names. Tabs may also be mere blanks.
 NamesLine read_names(std::string_view line);
+/// The same with this separator.
+NamesLine read_names(std::string_view line, Separator separator);
 
 /// A comment that names x and y.
 class CommentHeader {

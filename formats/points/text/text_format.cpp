@@ -22,7 +22,7 @@ constinit const PointFormat kTextPoints = {
     .open_reader =
         [](PointInput input, const PointReaderOptions& options) {
           return open_text_reader(std::move(input.source), input.path, std::move(input.content),
-                                  {options.columns, options.skip_invalid});
+                                  {options.text, options.skip_invalid});
         },
     .open_writer =
         [](std::unique_ptr<OutputFile> file, const std::string& path,

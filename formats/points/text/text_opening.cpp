@@ -1,9 +1,12 @@
 #include "formats/points/text/text_opening.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <span>
 #include <utility>
 
 #include "formats/bytes/fields.h"
@@ -50,27 +53,67 @@ struct RowLayout {
 class Opening {
  public:
   Opening(LineReader& lines, const std::string& name, const TextRows& rows)
-      : lines_(lines), name_(name), chosen_(rows.columns), skips_invalid_(rows.skip_invalid) {}
+      : lines_(lines),
+        name_(name),
+        said_(rows.layout),
+        chosen_(rows.layout.columns),
+        skips_invalid_(rows.skip_invalid) {}
 
   TextOpening read() {
+    skip_lines();
     if (!next_data_line()) return without_rows(first_columns({}));
     if (line_.find('\r') != line_.npos) {
       fail("has line ends of CR alone: convert them to LF (tr '\\r' '\\n')");
     }
     const bool is_pts = read_count();
     if (!is_pts && scan_points_) return without_rows(first_columns({}));
+    if (!said_.names.empty()) return under_chosen_names();
     if (chosen_) return with_chosen_columns();
+    if (said_.no_header) return with_row(columns_of_row());
     if (is_pts) return with_row(columns_of_row());
     if (is_header()) return under_header();
     return with_row(columns_of_row());
   }
 
  private:
+  void skip_lines() {
+    for (std::uint64_t line = 0; line < said_.skip_lines; ++line) {
+      if (!lines_.next(line_)) {
+        throw BadInput(name_, fmt::format("has {} lines, of which {} are to be left out", line,
+                                          said_.skip_lines));
+      }
+      lines_.pass_over();
+    }
+  }
+
+  /// Those that a line may be read with, in the order in which they are tried.
+  [[nodiscard]] std::span<const Separator> separators() const {
+    if (!is_separator_said()) return kSeparators;
+    return {std::find(kSeparators.begin(), kSeparators.end(), Separator{said_.separator}), 1};
+  }
+  [[nodiscard]] bool is_separator_said() const { return said_.separator != 0; }
+  [[nodiscard]] Separator likely_separator_of(std::string_view line) const {
+    return is_separator_said() ? Separator{said_.separator} : likely_separator(line);
+  }
+  [[nodiscard]] NamesLine names_of(std::string_view line) const {
+    return is_separator_said() ? read_names(line, Separator{said_.separator}) : read_names(line);
+  }
+
   /// Sets line_ to the next one that is no comment; false at the end. Of comments before it the
   /// last ones that name x and y are kept.
   bool next_data_line() {
     while (lines_.next(line_)) {
       if (!is_comment(line_)) return true;
+      if (said_.no_header) {
+        lines_.pass_over();
+        continue;
+      }
+      if (!said_.names.empty()) {
+        const NamesLine names = names_of(text_of_comment(line_));
+        if (columns_called(names.names)) {
+          commented_names_.assign(names.names.begin(), names.names.end());
+        }
+      }
       if (auto header = CommentHeader::read(text_of_comment(line_), lines_.number())) {
         if (comments_.size() == kMostComments) comments_.erase(comments_.begin());
         comments_.push_back(std::move(*header));
@@ -103,7 +146,7 @@ class Opening {
       const auto numbers = std::count_if(fields.begin(), at_most(fields, some), resembles_number);
       return static_cast<std::size_t>(numbers) >= all;
     };
-    return !begins_with_numbers(likely_separator(line_), 3, 1) &&
+    return !begins_with_numbers(likely_separator_of(line_), 3, 1) &&
            !begins_with_numbers(Separator::kBlanks, 2, 2);
   }
 
@@ -111,7 +154,7 @@ class Opening {
   TextOpening with_chosen_columns() {
     RowLayout layout = layout_of_row();
     const std::vector<std::string_view> fields = text_names(line_, layout.separator);
-    const bool is_header = std::ranges::none_of(*chosen_, [&](int column) {
+    const bool is_header = !said_.no_header && std::ranges::none_of(*chosen_, [&](int column) {
       return column >= 0 && static_cast<std::size_t>(column) < fields.size() &&
              resembles_number(fields[column]);
     });
@@ -121,6 +164,43 @@ class Opening {
       layout = layout_of_first_point();
     }
     return with_row(first_columns(layout));
+  }
+
+  /// The columns that have the chosen names, in the first line, or in the last comment that has all.
+  TextOpening under_chosen_names() {
+    NamesLine names = names_of(line_);
+    const std::string header(line_);
+    chosen_ = columns_called(names.names);
+    if (!chosen_ && !commented_names_.empty()) {
+      names_ = commented_names_;
+      chosen_ = columns_called({names_.begin(), names_.end()});
+      return with_row(first_columns(layout_of_first_point()));
+    }
+    if (!chosen_) {
+      fail(fmt::format("does not name the columns {}: it has {}", fmt::join(said_.names, ", "),
+                       listed(names.names)),
+           Remedy::kColumns);
+    }
+    names = names_of(header);
+    names_.assign(names.names.begin(), names.names.end());
+    if (!next_data_line()) return without_rows(first_columns({}));
+    return with_row(first_columns(layout_of_first_point()));
+  }
+
+  /// Those of the chosen names; nothing unless each is there once.
+  [[nodiscard]] std::optional<std::array<int, 3>> columns_called(
+      const std::vector<std::string_view>& names) const {
+    std::array<int, 3> columns = {-1, -1, -1};
+    for (std::size_t k = 0; k < said_.names.size(); ++k) {
+      const auto is_called = [&](std::string_view name) {
+        return std::ranges::equal(name, said_.names[k], [](unsigned char a, unsigned char b) {
+          return std::tolower(a) == std::tolower(b);
+        });
+      };
+      if (std::ranges::count_if(names, is_called) != 1) return std::nullopt;
+      columns.at(k) = static_cast<int>(std::ranges::find_if(names, is_called) - names.begin());
+    }
+    return columns;
   }
 
   /// Why the first row cannot be one under these names; empty if it can.
@@ -141,7 +221,7 @@ class Opening {
 
   TextOpening under_header() {
     const std::string header(line_);
-    const NamesLine names = read_names(header);
+    const NamesLine names = names_of(header);
     if (!names.choice.fault.empty()) {
       fail(fmt::format(
           "is a header whose columns are {}: {}; name columns x, y and z, or put # before a line "
@@ -181,7 +261,7 @@ class Opening {
     if (!CommentHeader::is_header(names)) return std::nullopt;
     const std::array<int, 3>& column = names.choice.column;
     for (const bool any : {false, true}) {
-      for (const Separator separator : kSeparators) {
+      for (const Separator separator : separators()) {
         const std::vector<std::string_view> fields = text_fields(line_, separator);
         if (fields.size() != names.names.size()) continue;
         const bool commas = has_decimal_commas(separator, column);
@@ -293,25 +373,32 @@ class Opening {
     // Two tabs side by side may be one column that is empty, or mere blanks.
     const std::string_view text = trimmed(line_);
     const bool tabs_only = text.find(' ') == text.npos && line_.find('\t') != line_.npos;
-    for (const Separator separator : kSeparators) {
+    for (const Separator separator : separators()) {
       const std::vector<std::string_view> fields = text_fields(line_, separator);
-      if (fields.size() < 2 || (separator == Separator::kBlanks && tabs_only)) continue;
+      if (fields.size() < 2 ||
+          (separator == Separator::kBlanks && tabs_only && !is_separator_said())) {
+        continue;
+      }
       const std::array<int, 3> column = columns_of(fields.size());
       for (const bool commas : {false, true}) {
         if (commas && separator == Separator::kComma) continue;
+        if (said_.decimal != 0 && commas != (said_.decimal == ',')) continue;
         if (!are_numbers(fields, column, commas)) continue;
-        if (separator == Separator::kComma && !chosen_) check_commas(fields);
+        if (separator == Separator::kComma && !chosen_ && !is_said()) check_commas(fields);
         const bool decimal_commas = commas || has_decimal_commas(separator, column);
-        if (decimal_commas && separator == Separator::kBlanks) {
+        if (decimal_commas && separator == Separator::kBlanks && !is_said()) {
           notices_.emplace_back("commas are read as decimal commas, as blanks separate columns");
         }
         return {separator, decimal_commas, fields.size(), true};
       }
     }
     // No way to read it; the likeliest one words the error.
-    const Separator likeliest = likely_separator(line_);
+    const Separator likeliest = likely_separator_of(line_);
     return {likeliest, false, text_fields(line_, likeliest).size(), false};
   }
+
+  /// Whether what commas are is said.
+  [[nodiscard]] bool is_said() const { return is_separator_said() || said_.decimal != 0; }
 
   /// The columns that are read of a table of `count` columns whose names do not tell.
   [[nodiscard]] std::array<int, 3> columns_of(std::size_t count) const {
@@ -379,6 +466,7 @@ class Opening {
   [[nodiscard]] bool has_decimal_commas(Separator separator,
                                         const std::array<int, 3>& column) const {
     if (separator == Separator::kComma) return false;
+    if (said_.decimal != 0) return said_.decimal == ',';
     bool commas = false;
     look_at_rows(separator, [&](const std::vector<std::string_view>& fields) {
       for (const int i : column) {
@@ -425,6 +513,7 @@ class Opening {
 
   LineReader& lines_;
   const std::string& name_;
+  const TextLayout& said_;
   std::optional<std::array<int, 3>> chosen_;
   bool skips_invalid_;
   std::uint64_t invalid_ = 0;  // rows that were left out
@@ -433,7 +522,8 @@ class Opening {
   std::vector<CommentHeader> comments_;
   std::optional<std::uint64_t> scan_points_;
   std::uint64_t scan_line_ = 0;
-  std::vector<std::string> names_;  // of columns
+  std::vector<std::string> names_;            // of columns
+  std::vector<std::string> commented_names_;  // in the last comment that has all that are said
   std::vector<std::string> notices_;
 };
 

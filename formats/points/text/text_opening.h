@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/bytes/line_reader.h"
+#include "formats/points/common/text_layout.h"
 #include "formats/points/text/text_columns.h"
 
 namespace spillway::formats {
@@ -28,9 +29,7 @@ struct TextOpening {
 
 /// How rows are to be read.
 struct TextRows {
-  /// The columns of x, y and z, counted from 0, that of z -1 where there is none: they go before
-  /// what names and rows tell.
-  std::optional<std::array<int, 3>> columns{};
+  TextLayout layout{};
   bool skip_invalid = false;  ///< rows that are no points are left out
 };
 

@@ -27,6 +27,11 @@ bool OpenedPoints::identify(RunIdentity& identity) const {
   }
   add("format of points", options_.format);
   add("columns", fmt::join(options_.columns, " "));
+  add("names of columns", fmt::join(options_.column_names, ","));
+  add("lines left out", options_.skip_lines);
+  add("separator", static_cast<int>(options_.separator));
+  add("decimal sign", static_cast<int>(options_.decimal));
+  add("no header", options_.no_header);
   add("skip_invalid", options_.skip_invalid);
   add("keep_withheld", options_.keep_withheld);
   add("every", options_.every);

@@ -140,15 +140,43 @@ std::optional<std::array<int, 3>> columns_of(const std::vector<int>& chosen) {
   return columns;
 }
 
-/// Throws unless there is an input that has columns to choose.
-void check_columns(const std::vector<PointHeader>& headers) {
+/// Throws InvalidArgument for what no text can be like.
+TextLayout text_layout_of(const PointOptions& options) {
+  const auto check = [](const char* name, char sign, std::string_view signs) {
+    if (sign == 0 || signs.find(sign) != signs.npos) return;
+    throw InvalidArgument(fmt::format("\"{}\" is no {} of text", sign, name));
+  };
+  check("separator", options.separator, ",;\t ");
+  check("decimal sign", options.decimal, ".,");
+  if (options.separator == ',' && options.decimal == ',') {
+    throw InvalidArgument("commas separate columns, or are decimal signs, not both");
+  }
+  const std::vector<std::string>& names = options.column_names;
+  if (!names.empty()) {
+    if (names.size() != 2 && names.size() != 3) {
+      throw InvalidArgument(fmt::format("2 or 3 columns are x, y and z, not {}", names.size()));
+    }
+    if (!options.columns.empty() || options.no_header) {
+      throw InvalidArgument("columns are chosen by their names, by numbers, or there are none");
+    }
+  }
+  return {.columns = columns_of(options.columns),
+          .names = names,
+          .skip_lines = options.skip_lines,
+          .separator = options.separator,
+          .decimal = options.decimal,
+          .no_header = options.no_header};
+}
+
+/// Throws unless there is an input of which can be said how its text is to be read.
+void check_is_text(const std::vector<PointHeader>& headers) {
   const auto is_table = [](const PointHeader& header) {
     const PointFormat* const format = find_point_format(header.format);
     return format != nullptr && format->is_text;
   };
   if (std::ranges::any_of(headers, is_table)) return;
   throw InvalidArgument(fmt::format(
-      "{}, so there are no columns to choose",
+      "{}, so there are no lines and columns to choose",
       headers.size() == 1 ? headers.front().name + " is not text" : "no input is text"));
 }
 
@@ -210,7 +238,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.dimension = options.dimension;
   how.index = true;
   how.reader.format = options.format;
-  how.reader.columns = columns_of(options.columns);
+  how.reader.text = text_layout_of(options);
   how.reader.skip_invalid = options.skip_invalid;
   how.reader.salvage = options.salvage;
   how.skip_broken = options.skip_broken;
@@ -256,7 +284,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
 }
 
 void OpenedPoints::check_input(const PointOptions& options, const Context& context) const {
-  if (!options.columns.empty()) check_columns(input_->headers());
+  if (!text_layout_of(options).is_none()) check_is_text(input_->headers());
   if (options.resolution > 0) check_levels(input_->headers(), context.options());
   const bool by_height = options.thin && (options.thin->choice == spillway::ThinChoice::kLowest ||
                                           options.thin->choice == spillway::ThinChoice::kHighest);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "stream/library/meshes/opened_mesh.h"
 #include "stream/library/meshes/whole_mesh.h"
 #include "stream/library/points/opened_points.h"
+#include "stream/library/products/attribute_statistics.h"
 #include "stream/source/input_regions.h"
 
 namespace spillway::stream {
@@ -84,6 +86,33 @@ class FurtherExtent {
  private:
   std::vector<std::array<double, 2>> ranges_;
 };
+
+std::unique_ptr<OpenedPoints> open_one(const std::string& path, const PointOptions& options,
+                                       const Context& context) {
+  if (spillway::stands_for_several(path)) {
+    throw InvalidArgument(path + ": this stands for several files; describe one by one");
+  }
+  return std::make_unique<OpenedPoints>(std::vector{path}, options, context);
+}
+
+PointsInfo told_by(const PointHeader& header) {
+  PointsInfo info;
+  info.format = header.format;
+  info.version = header.version;
+  info.point_format = header.point_format;
+  info.coordinates = header.coordinates;
+  info.header_points = header.count;
+  info.lattice = lattice_info(header.lattice);
+  info.crs = header.crs;
+  info.crs_note = header.crs_note;
+  info.software = header.software;
+  if (!header.regions.empty()) {
+    info.cells = std::max<std::uint64_t>(header.cells, header.regions.size());
+  }
+  if (const auto told = extent_told_by(header)) info.header_box = extent_of(*told);
+  info.attributes = header.attributes.attributes();
+  return info;
+}
 
 MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   watch.begin("read", "vertices");
@@ -152,18 +181,17 @@ namespace spillway {
 PointsInfo describe_points(const std::string& path, const PointOptions& options,
                            const Context& context) {
   using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
-  if (spillway::stands_for_several(path)) {
-    throw InvalidArgument(path + ": this stands for several files; describe one by one");
-  }
   RunWatch watch(context);
   watch.check();
-  OpenedPoints points({path}, options, context);
-  points.begin(watch, false);
-  stream::JoinedInputs& source = points.input();
+  const auto points = open_one(path, options, context);
+  points->begin(watch, false);
+  stream::JoinedInputs& source = points->input();
+  source.carry({.all = true});
   const PointHeader header = source.headers().front();
   const std::optional<geometry::IntegerLattice>& lattice = source.lattice();
   Box<3> box;
   OutsidePoints outside(header);
+  AttributeStatistics attributes(source.attributes());
   PointBlock block;
   watch.begin("read", "points");
   while (source.read(block)) {
@@ -172,26 +200,28 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
       box.expand(place);
       outside.add(place.numbers());
     }
+    attributes.add(block.attributes);
     watch.tell(source.points_read(), source.fraction_read());
   }
   watch.end(source.points_read());
-  PointsInfo info;
-  info.format = header.format;
-  info.version = header.version;
-  info.point_format = header.point_format;
-  info.coordinates = header.coordinates;
+  PointsInfo info = told_by(header);
   info.counts = source.counts();
   info.extent = extent_of(box);
-  info.lattice = lattice_info(header.lattice);
-  info.crs = header.crs;
-  info.crs_note = header.crs_note;
-  info.software = header.software;
-  if (!header.regions.empty()) {
-    info.cells = std::max<std::uint64_t>(header.cells, header.regions.size());
-  }
-  if (const auto told = extent_told_by(header)) info.header_box = extent_of(*told);
   info.points_outside = outside.count();
-  info.attributes = header.attributes.attributes();
+  info.attributes = source.attributes().attributes();
+  info.ranges = attributes.ranges();
+  info.classes = attributes.classes();
+  info.returns = attributes.returns();
+  return info;
+}
+
+PointsInfo describe_header(const std::string& path, const PointOptions& options,
+                           const Context& context) {
+  using namespace stream;  // NOLINT(google-build-using-namespace): the other side of the door
+  const auto points = open_one(path, options, context);
+  const PointHeader header = points->input().headers().front();
+  PointsInfo info = told_by(header);
+  info.extent = info.header_box;
   return info;
 }
 

@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/inputs/las_samples.h"
 
 namespace spillway::test {
 namespace {
@@ -36,7 +40,8 @@ TEST(Info, ListsWhatPointsCarry) {
   work.succeed("spillway generate -q terrain -n 100 -o in.las");
   const auto las = work.info("in.las")["attributes"];
   ASSERT_FALSE(las.empty());
-  EXPECT_EQ(las[0], (nlohmann::json{{"name", "intensity"}, {"type", "uint16"}}));
+  EXPECT_EQ(las[0],
+            (nlohmann::json{{"name", "intensity"}, {"type", "uint16"}, {"min", 0}, {"max", 0}}));
   work.succeed("spillway convert -q in.las -o new.las --las-version 1.4");
   const auto extended = work.info("new.las")["attributes"];
   const auto angle = std::find_if(extended.begin(), extended.end(), [](const auto& attribute) {
@@ -47,8 +52,61 @@ TEST(Info, ListsWhatPointsCarry) {
   EXPECT_EQ((*angle)["scale"], 0.006);
   EXPECT_EQ((*angle)["offset"], 0);
   const std::string text = work.succeed("spillway info -q new.las");
-  EXPECT_THAT(text, HasSubstr("  attributes\n    intensity              uint16\n"));
+  EXPECT_THAT(text, HasSubstr("  attributes\n    intensity              uint16  min 0  max 0\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("    scan_angle +int16  scale 0.006  offset 0"));
+}
+
+TEST(Info, CountsClassesAndReturnsAndTellsRangesOfAttributes) {
+  const Workspace work;
+  work.write("a.las", scattered_las(0, 1000).bytes());
+  work.write("b.las", scattered_las(1000, 500).bytes());
+  const auto info = work.info("a.las");
+  for (const char* number : {"0", "1", "2", "3", "4"}) EXPECT_EQ(info["classes"][number], 200);
+  EXPECT_EQ(info["classes"].size(), 5U);
+  EXPECT_EQ(info["returns"], (nlohmann::json{{"1", 334}, {"2", 333}, {"3", 333}}));
+  for (const auto& attribute : info["attributes"]) {
+    if (attribute["name"] != "return_number") continue;
+    EXPECT_EQ(attribute["min"], 1);
+    EXPECT_EQ(attribute["max"], 3);
+  }
+  EXPECT_NEAR(info["spacing"].get<double>(), 1 / std::sqrt(info["density"].get<double>()), 1e-12);
+  EXPECT_EQ(nlohmann::json::parse(
+                work.succeed("spillway info -q --json a.las --keep-class 2,3"))["classes"],
+            (nlohmann::json{{"2", 200}, {"3", 200}}));
+  std::istringstream lines(work.succeed("spillway info -q --json a.las b.las"));
+  std::vector<nlohmann::json> all;
+  for (std::string line; std::getline(lines, line);) all.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[2]["kind"], "total");
+  EXPECT_EQ(all[2]["files"], 2);
+  EXPECT_EQ(all[2]["points"], 1500);
+  EXPECT_EQ(all[2]["classes"]["4"], 300);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(all[2]["extent"]["min"][k], std::min(all[0]["extent"]["min"][k].get<double>(),
+                                                   all[1]["extent"]["min"][k].get<double>()));
+  }
+  EXPECT_THAT(work.succeed("spillway info -q a.las b.las"),
+              ::testing::ContainsRegex("total\n  kind +total\n  files +2\n  points +1500\n"));
+}
+
+TEST(Info, OfHeadersAloneReadsNoPoints) {
+  const Workspace work;
+  auto las = scattered_las(0, 1000);
+  const std::string whole = las.bytes();
+  work.write("cut.las", whole.substr(0, whole.size() / 2));
+  EXPECT_NE(work.run("spillway info -q cut.las").exit_code, 0);
+  work.write("a.las", whole);
+  const auto info = nlohmann::json::parse(work.succeed("spillway info -q --json a.las --fast"));
+  EXPECT_EQ(info["points"], 1000);
+  EXPECT_EQ(info["extent"], info["header_box"]);
+  EXPECT_TRUE(info["classes"].is_null());
+  EXPECT_TRUE(info["withheld"].is_null());
+  EXPECT_EQ(info["attributes"][0], (nlohmann::json{{"name", "intensity"}, {"type", "uint16"}}));
+  work.write("a.txt", "1 2 3\n4 5 6\n");
+  EXPECT_TRUE(nlohmann::json::parse(work.succeed("spillway info -q --json a.txt --fast"))["points"]
+                  .is_null());
+  EXPECT_THAT(work.run("spillway info a.las --fast --keep-class 2").err,
+              HasSubstr("--keep-class has no effect with --fast, which reads no points"));
 }
 
 TEST(Info, OfPointsWithoutAttributesSaysSo) {

@@ -61,7 +61,7 @@ TEST_F(Table, ChoicesThatCannotBeAreWrongUsage) {
   work_.succeed("spillway generate -q terrain -n 50 -o a.las");
   const Result las = work_.run("spillway triangulate -q a.las -o o.ply --columns XYZ");
   EXPECT_EQ(las.exit_code, 2);
-  EXPECT_THAT(las.err, HasSubstr("a.las is not text, so there are no columns to choose"));
+  EXPECT_THAT(las.err, HasSubstr("a.las is not text, so there are no lines and columns to choose"));
   EXPECT_EQ(work_.run("spillway dem right.ply -o o.tif --resolution 1 --columns XYZ").exit_code, 2);
 }
 

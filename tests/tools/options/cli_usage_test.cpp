@@ -238,12 +238,13 @@ bool is_good(const std::string& option, const std::string& value) {
   if (value == "-1") {
     return option == "--nodata" || option == "--base" || option == "--levels" ||
            option == "--offset" || option == "--level" || option == "--min-height" ||
-           option == "--max-height";
+           option == "--max-height" || option == "--clip-buffer";
   }
   return value == "1,5" &&
          (option == "--levels" || option == "--view" || option == "--light" ||
-          option == "--returns" || option == "--keep-class" || option == "--columns" ||
-          option == "--drop-class" || option == "--ground-class" || option == "--simulate-cores");
+          option == "--returns" || option == "--z-range" || option == "--keep-class" ||
+          option == "--columns" || option == "--drop-class" || option == "--ground-class" ||
+          option == "--simulate-cores");
 }
 
 TEST(Usage, BadNumbersAreRefusedByEveryOptionOfEverySubcommand) {

@@ -28,7 +28,7 @@ constexpr const char* kSurvey =
 
 AllPoints read_columns(const std::string& content, const std::array<int, 3>& columns) {
   PointReaderOptions options;
-  options.columns = columns;
+  options.text.columns = columns;
   return read_content("a.csv", content, options);
 }
 
