@@ -52,22 +52,29 @@ py::dict counts_of(const std::vector<std::uint64_t>& counts) {
   return all;
 }
 
-py::dict points_info(Run& run, const std::string& path, const PointOptions& options) {
+py::dict points_info(Run& run, const std::string& path, const PointOptions& options, bool fast) {
   PointsInfo info;
   run.expect(kPhasesOfInfo);
-  run.work([&] { info = describe_points(path, options, run.context()); });
+  run.work([&] {
+    info = fast ? describe_header(path, options, run.context())
+                : describe_points(path, options, run.context());
+  });
   py::dict statistics;
   statistics["format"] = info.format;
   statistics["version"] = text_or_none(info.version);
   statistics["point_format"] =
       info.point_format < 0 ? py::object(py::none()) : py::object(py::int_(info.point_format));
   statistics["coordinates"] = info.coordinates;
-  statistics["points"] = info.counts.kept();
+  if (fast) {
+    statistics["points"] = info.header_points;
+  } else {
+    statistics["points"] = info.counts.kept();
+  }
   statistics["filters"] = statistics_of(info.counts);
   statistics["extent"] = extent_of(info.extent);
   statistics["header_box"] = extent_of(info.header_box);
   statistics["points_outside"] =
-      info.header_box ? py::object(py::int_(info.points_outside)) : py::object(py::none());
+      info.header_box && !fast ? py::object(py::int_(info.points_outside)) : py::object(py::none());
   add_lattice(info.lattice, statistics);
   statistics["crs"] = text_or_none(info.crs);
   statistics["crs_note"] = text_or_none(info.crs_note);
@@ -151,7 +158,8 @@ py::dict check_mesh(Run& run, const std::string& path, const MeshOptions& option
 }  // namespace
 
 void bind_questions(py::module_& module) {
-  module.def("points_info", points_info, py::arg("run"), py::arg("path"), py::arg("options"));
+  module.def("points_info", points_info, py::arg("run"), py::arg("path"), py::arg("options"),
+             py::arg("fast"));
   module.def("mesh_info", mesh_info, py::arg("run"), py::arg("path"), py::arg("options"));
   module.def("check", check_mesh, py::arg("run"), py::arg("path"), py::arg("options"),
              py::arg("any_delaunay"), py::arg("points"), py::arg("point_options"));

@@ -381,7 +381,9 @@ def generate(
 
 
 @takes(InfoOptions)
-def info(file: PathLike, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInfo:
+def info(
+    file: PathLike, *, fast: bool = False, **options: Unpack[InfoOptions]
+) -> PointsInfo | MeshInfo:
     """Tell what a file of points or of a mesh holds.
 
     As ``spillway info``. All of it is read, so counts and extent are exact, whatever a header says.
@@ -390,6 +392,9 @@ def info(file: PathLike, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInf
     ----------
     file : path
         One file; its first bytes and its name tell whether it holds points or a mesh.
+    fast : bool, optional
+        Of points, tell what the header tells, and read no points: their number and extent are the
+        header's then.
     {options}
 
     Returns
@@ -406,7 +411,7 @@ def info(file: PathLike, **options: Unpack[InfoOptions]) -> PointsInfo | MeshInf
     if is_mesh(run, paths, None, options):
         refuse(options, names_for("points"), "on a mesh")
         return MeshInfo(**_spillway.mesh_info(run, paths[0], mesh_options({}, None)))
-    return PointsInfo(**_spillway.points_info(run, paths[0], point_options(options, 2)))
+    return PointsInfo(**_spillway.points_info(run, paths[0], point_options(options, 2), fast))
 
 
 @takes(CheckOptions)

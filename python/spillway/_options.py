@@ -46,7 +46,7 @@ class FilterOptions(TypedDict, total=False):
     skip_lines: int | None
     separator: str | None
     decimal: str | None
-    no_header: bool
+    header: bool
     skip_invalid: bool
     salvage: bool
     keep_withheld: bool
@@ -286,11 +286,11 @@ _OPTIONS = {
         "points",
         attribute("decimal"),
     ),
-    "no_header": _Option(
+    "header": _Option(
         "bool, optional",
-        "Of text, the first line is a row, and comments name no columns.",
+        "Of text, whether its first line or a comment may name the columns. By default it may.",
         "points",
-        attribute("no_header"),
+        attribute("no_header", operator.not_),
     ),
     "skip_invalid": _Option(
         "bool, optional",
@@ -605,7 +605,7 @@ def put_all(target: Any, values: Mapping[str, Any]) -> None:
 def is_given(options: Mapping[str, Any], name: str) -> bool:
     """Whether an option asks for anything: headers are trusted unless they are not to be."""
     value = options.get(name)
-    return value is not None and value is not (name == "trust_headers")
+    return value is not None and value is not (name in ("trust_headers", "header"))
 
 
 def refuse(options: Mapping[str, Any], names: Iterable[str], where: str) -> None:

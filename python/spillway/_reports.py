@@ -297,7 +297,7 @@ class PointsInfo(_Report):
     version: Optional[str]
     point_format: Optional[int]
     coordinates: int
-    points: int
+    points: Optional[int]
     filters: dict[str, int]
     extent: Optional[Extent]
     header_box: Optional[Extent]

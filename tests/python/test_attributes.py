@@ -115,8 +115,12 @@ class Attributes(InFolder):
     def test_info_lists_them(self):
         spillway.convert(survey(10), "points.spp")
         told = spillway.info("points.spp").attributes
-        self.assertIn({"name": "intensity", "type": "uint16"}, told)
-        self.assertIn({"name": "normal", "type": "float32", "elements": 3}, told)
+        values = survey(10)
+        for name, more in (("intensity", {"type": "uint16"}), ("normal", {"elements": 3})):
+            attribute = next(one for one in told if one["name"] == name)
+            self.assertLessEqual(more.items(), attribute.items())
+            self.assertEqual(attribute["min"], values[name].min())
+            self.assertEqual(attribute["max"], values[name].max())
 
 
 if __name__ == "__main__":

@@ -278,12 +278,49 @@ class InfoAndCheck(InFolder):
             for key, value in dataclasses.asdict(info).items():
                 if key == "filters" or key not in told:
                     continue
+                if key in ("classes", "returns"):  # the keys of JSON are texts
+                    value = {str(number): count for number, count in value.items()} or None
                 if key in ("extent", "header_box"):
                     value = None if value is None else {"min": list(value[0]), "max": list(value[1])}
                 with self.subTest(file=file, key=key):
                     value = list(value) if isinstance(value, tuple) else value
                     self.assertEqual(value, told[key])
         self.assertEqual(spillway.info("hills.las", every=4).points, 500)
+        fast = spillway.info("hills.las", fast=True)
+        self.assertEqual((fast.points, fast.classes, fast.extent), (2000, {}, fast.header_box))
+
+    def test_points_are_clipped_and_brought_to_another_system_as_by_the_command(self):
+        spillway.generate("terrain", 2000, "hills.las")
+        low, high = (corner for corner in spillway.info("hills.las").extent)
+        x, z = (round((low[k] + high[k]) / 2) for k in (0, 2))
+        with open("area.csv", "w", encoding="utf8") as file:
+            file.write(f'n,WKT\n1,"POLYGON ((0 0,{x} 0,{x} 9000000,0 9000000,0 0))"\n')
+        cases = (
+            ("--clip area.csv --clip-buffer -5", {"clip": "area.csv", "clip_buffer": -5}),
+            ("--clip area.csv --clip-outside", {"clip": "area.csv", "clip_outside": True}),
+            (f"--z-range 0,{2 * z} --multiply-z 2", {"z_range": (0, 2 * z), "multiply_z": 2}),
+            ("--crs EPSG:32633 --to-crs EPSG:25832", {"crs": "EPSG:32633", "to_crs": "EPSG:25832"}),
+        )
+        for words, options in cases:
+            with self.subTest(options=words):
+                command("convert", "hills.las", "-o", "a.csv", *words.split())
+                report = spillway.convert("hills.las", "b.csv", **options)
+                self.assertEqual(bytes_of("b.csv"), bytes_of("a.csv"))
+                self.assertGreater(report.written, 0)
+
+    def test_what_is_said_of_a_table_is_as_by_the_command(self):
+        with open("table.txt", "w", encoding="utf8") as file:
+            file.write("station\nNr;Rechts;Hoch;NN\n" + "1;1,5;2,5;3,5\n2;4;5;6\n3;0;9;7\n")
+        words = "--skip-lines 1 --columns Rechts,Hoch,NN --separator semicolon --decimal comma"
+        command("convert", "table.txt", "-o", "a.csv", *words.split())
+        spillway.convert(
+            "table.txt", "b.csv", skip_lines=1, columns=["Rechts", "Hoch", "NN"], separator=";", decimal=","
+        )
+        self.assertEqual(bytes_of("b.csv"), bytes_of("a.csv"))
+        spillway.convert(
+            "table.txt", "c.csv", skip_lines=2, columns=[2, 3, 4], header=False, attributes=[]
+        )
+        self.assertIn(b"1.5", bytes_of("c.csv"))
 
     def test_a_mesh_is_proved_with_and_without_points(self):
         points = random_points(1000, 2)
