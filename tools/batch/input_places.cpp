@@ -4,11 +4,13 @@
 #include <spillway/input.h>
 #include <spillway/points.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <system_error>
 
 #include "src/error.h"
+#include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 
 namespace spillway::command {
@@ -35,6 +37,15 @@ std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context
   InputOptions given;
   given.format = value_of(job, "input-format");
   given.columns = value_of(job, "columns");
+  given.separator = value_of(job, "separator");
+  given.decimal = value_of(job, "decimal");
+  given.no_header = job.options.contains("no-header");
+  if (const auto lines = parse_number(value_of(job, "skip-lines"))) {
+    given.skip_lines = static_cast<std::uint64_t>(*lines);
+  }
+  given.crs = value_of(job, "crs");
+  given.force_crs = job.options.contains("force-crs");
+  given.to_crs = value_of(job, "to-crs");
   given.skip_invalid = job.options.contains("skip-invalid");
   given.salvage = job.options.contains("salvage");
   const PointOptions options = point_options(given, 2);

@@ -130,6 +130,8 @@ HeightReport measure(const HeightCommandOptions& options, PointSink& sink,
   of_ground.classes = classes;
   of_ground.crs = points.crs;
   of_ground.foreign_crs = points.foreign_crs;
+  of_ground.to_crs = points.to_crs;
+  of_ground.z_multiplier = points.z_multiplier;
   of_ground.skip_invalid = points.skip_invalid;
   of_ground.salvage = points.salvage;
   of_ground.skip_broken = points.skip_broken;

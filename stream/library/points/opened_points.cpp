@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/gdal/crs_text.h"
 #include "formats/gdal/gdal.h"
 #include "formats/points/point_formats.h"
 #include "src/error.h"
@@ -295,13 +296,22 @@ void OpenedPoints::check_input(const PointOptions& options, const Context& conte
   if (options.z_range && !input_->has_heights()) {
     throw InvalidArgument("the points have no z to choose them by");
   }
-  if (options.z_multiplier != 1 && !input_->has_heights()) {
-    throw InvalidArgument("the points have no z to multiply");
-  }
+  if (options.z_multiplier != 1) check_multiplied(options, context);
   if (!options.clip.empty() && !options.foreign_crs) {
     check_same_crs(name_, input_->crs(), options.clip, clip_crs_, options.clip);
   }
   if (!options.attributes.empty()) refuse_unknown_names(options.attributes, offered());
+}
+
+/// A coordinate system that tells the unit of heights would be false then.
+void OpenedPoints::check_multiplied(const PointOptions& options, const Context& context) const {
+  if (!input_->has_heights()) throw InvalidArgument("the points have no z to multiply");
+  const std::string& crs = input_->crs();
+  const bool tells_heights = is_compound_wkt(crs) || crs.find('+') != std::string::npos;
+  if (!tells_heights || !options.crs.empty() || !context.options().warning) return;
+  context.options().warning(
+      "warning: heights are multiplied, but the coordinate system still tells the unit that they "
+      "had; give another system in its place");
 }
 
 AttributeLayout OpenedPoints::offered() const {

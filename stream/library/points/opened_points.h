@@ -32,6 +32,7 @@ class OpenedPoints final : public PointSource, public EnginePoints {
   EnginePoints* engine_points() override { return this; }
   JoinedInputsOptions source_options(const PointOptions& options, const Context& context);
   void check_input(const PointOptions& options, const Context& context) const;
+  void check_multiplied(const PointOptions& options, const Context& context) const;
   [[nodiscard]] AttributeLayout offered() const;
 
   PointOptions options_;

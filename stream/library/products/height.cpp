@@ -247,6 +247,11 @@ PointConversion copy_points(const std::vector<std::string>& paths, const PointOp
   all.dimension = 0;
   all.format = options.format;
   all.columns = options.columns;
+  all.column_names = options.column_names;
+  all.skip_lines = options.skip_lines;
+  all.separator = options.separator;
+  all.decimal = options.decimal;
+  all.no_header = options.no_header;
   all.skip_invalid = options.skip_invalid;
   all.keep_withheld = true;
   all.crs = options.crs;
@@ -285,6 +290,10 @@ PointOptions ground_options(const PointOptions& points, const std::vector<int>& 
   ground.returns.reset();
   ground.where.clear();
   ground.bounds.reset();
+  ground.z_range.reset();
+  ground.clip.clear();
+  ground.clip_buffer = 0;
+  ground.clip_outside = false;
   ground.thin.reset();
   ground.resolution = 0;
   ground.metadata = false;
@@ -350,6 +359,10 @@ HeightReport measure_heights(const std::vector<std::string>& paths, const PointO
     skipped = stream::copy_points(paths, points, files[0], context).skipped_files;
     wanted.format = "spp";
     wanted.columns.clear();
+    wanted.column_names.clear();
+    wanted.skip_lines = 0;
+    wanted.separator = wanted.decimal = 0;
+    wanted.no_header = false;
     wanted.skip_invalid = wanted.salvage = wanted.skip_broken = false;
   }
   const auto source = open_points(files, wanted, context);

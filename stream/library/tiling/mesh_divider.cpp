@@ -144,7 +144,7 @@ void MeshDivider::leave(const MeshStreamBlock& block) {
 
 void MeshDivider::write(MeshStreamBlock&& block) {
   enter(block);
-  const auto corners = static_cast<std::size_t>(header_.dimension + 1);
+  const auto corners = static_cast<std::size_t>(header_.dimension) + 1;
   for (std::size_t c = 0; c < block.corners.size(); c += corners) {
     const auto simplex = std::span<const std::uint32_t>(block.corners).subspan(c, corners);
     tiling_.find(centroid(simplex), tiles_);

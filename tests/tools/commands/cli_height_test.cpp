@@ -115,6 +115,30 @@ TEST_F(Height, IsTheSameFromAPipeAsFromAFile) {
   EXPECT_THAT(space.read("info"), HasSubstr("HeightAboveGround"));
 }
 
+/// The ground is there whatever is wanted of the other points.
+TEST_F(Height, OfPointsThatAreClippedIsTheSame) {
+  space.succeed("spillway height forest.csv --ground-class 2 -o out.csv --z-range 30,60");
+  const auto rows = rows_of(space.read("out.csv"));
+  EXPECT_GT(rows.size(), 100U);
+  check("out.csv", rows.size());
+  for (const auto& row : rows) EXPECT_TRUE(row[2] >= 30 && row[2] <= 60) << row[2];
+  space.succeed(
+      "tr , ';' < forest.csv | spillway height - --ground-class 2 -o pipe.csv --z-range 30,60 "
+      "--separator semicolon --columns x,y,z");
+  EXPECT_EQ(space.read("pipe.csv"), space.read("out.csv"));
+  if (build_lacks("GDAL")) return;
+  space.write("area.csv", "n,WKT\n1,\"POLYGON ((10 10,20 10,20 20,10 20,10 10))\"\n");
+  space.succeed("spillway height forest.csv --ground-class 2 -o out.csv --clip area.csv");
+  check("out.csv", rows_of(space.read("out.csv")).size());
+  EXPECT_GT(rows_of(space.read("out.csv")).size(), 10U);
+  const Result moved = space.run(
+      "spillway height forest.csv --ground-class 2 -o out.csv --crs EPSG:32633 --to-crs EPSG:3857 "
+      "--multiply-z 2");
+  // Points and ground are both brought there.
+  EXPECT_THAT(moved.err, HasSubstr("423 points in out.csv, heights from"));
+  EXPECT_THAT(moved.err, HasSubstr(" to 58, "));
+}
+
 TEST_F(Height, IsMeasuredAboveOtherPointsAndMeshesToo) {
   space.succeed("spillway convert forest.csv -o ground.csv --keep-class 2");
   space.succeed("spillway triangulate ground.csv -o ground.spm");
