@@ -191,14 +191,15 @@ class Opening {
   [[nodiscard]] std::optional<std::array<int, 3>> columns_called(
       const std::vector<std::string_view>& names) const {
     std::array<int, 3> columns = {-1, -1, -1};
-    for (std::size_t k = 0; k < said_.names.size(); ++k) {
+    std::size_t axis = 0;
+    for (const std::string& wanted : said_.names) {
       const auto is_called = [&](std::string_view name) {
-        return std::ranges::equal(name, said_.names[k], [](unsigned char a, unsigned char b) {
-          return std::tolower(a) == std::tolower(b);
+        return std::ranges::equal(name, wanted, [](unsigned char x, unsigned char y) {
+          return std::tolower(x) == std::tolower(y);
         });
       };
       if (std::ranges::count_if(names, is_called) != 1) return std::nullopt;
-      columns.at(k) = static_cast<int>(std::ranges::find_if(names, is_called) - names.begin());
+      columns.at(axis++) = static_cast<int>(std::ranges::find_if(names, is_called) - names.begin());
     }
     return columns;
   }
