@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <charconv>
-#include <cstddef>
-#include <string_view>
+#include <string>
 
 #include "formats/gdal/crs_text.h"
 #include "formats/gdal/gdal.h"
@@ -21,43 +17,9 @@ struct Told {
   CrsUnits units;
 };
 
-/// The number in the last UNIT or LENGTHUNIT of WKT: metres, unless x and y are degrees; 0 without.
-double last_unit(std::string_view wkt) {
-  for (std::size_t at = wkt.rfind("UNIT["); at != wkt.npos && at > 0;
-       at = wkt.rfind("UNIT[", at - 1)) {
-    const std::string_view before = wkt.substr(0, at);
-    const bool is_length = before.ends_with("LENGTH");
-    if (!is_length && std::isalpha(static_cast<unsigned char>(before.back())) != 0) continue;
-    const std::size_t quote = wkt.find('"', wkt.find('"', at) + 1);
-    const std::size_t comma = wkt.find(',', quote);
-    if (comma == wkt.npos) return 0;
-    const std::size_t begin = wkt.find_first_not_of(' ', comma + 1);
-    if (begin == wkt.npos) return 0;
-    double unit = 0;
-    const auto [end, fault] = std::from_chars(wkt.data() + begin, wkt.data() + wkt.size(), unit);
-    return fault == std::errc() ? unit : 0;
-  }
-  return 0;
-}
-
-Told told_by_wkt(std::string_view wkt) {
-  Told told;
-  const std::size_t quote = std::min(wkt.find('"'), wkt.size());
-  told.name = wkt.substr(std::min(quote + 1, wkt.size()), wkt.find('"', quote + 1) - quote - 1);
-  const auto has = [&](std::string_view word) { return wkt.find(word) != wkt.npos; };
-  told.units.is_geographic =
-      (has("GEOGCS[") || has("GEOGCRS[")) && !has("PROJCS[") && !has("PROJCRS[");
-  const std::size_t heights = std::min(wkt.find("VERT_CS["), wkt.find("VERTCRS["));
-  if (heights != wkt.npos) {
-    told.units.horizontal = last_unit(wkt.substr(0, heights));
-    told.units.vertical = last_unit(wkt.substr(heights));
-  }
-  return told;
-}
-
 /// Whether GDAL is to be asked what a code means: a whole library, for a notice.
 bool is_worth_asking(const std::string& code, const std::optional<Box<3>>& extent) {
-  if (code.find('+') != code.npos) return true;  // it may tell of heights
+  if (may_tell_heights(code)) return true;
   if (extent) {
     return extent->lo[0] >= -360 && extent->hi[0] <= 360 && extent->lo[1] >= -90 &&
            extent->hi[1] <= 90;
@@ -66,7 +28,7 @@ bool is_worth_asking(const std::string& code, const std::optional<Box<3>>& exten
 }
 
 std::optional<Told> told_by(const std::string& crs, const std::optional<Box<3>>& extent) {
-  if (looks_like_wkt(crs)) return told_by_wkt(crs);
+  if (looks_like_wkt(crs)) return Told{std::string(name_in_wkt(crs)), units_in_wkt(crs)};
   if (!is_worth_asking(crs, extent)) return std::nullopt;
   try {
     return Told{gdal().crs_name(crs), gdal().crs_units(crs)};

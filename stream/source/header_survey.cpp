@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "formats/bytes/bytes.h"
 #include "formats/inputs/open_points.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
@@ -53,7 +54,9 @@ void check_points_have(const SourceFacts::Input& input, const HeaderSurveyOption
 /// What has been met that many inputs tell alike, so that it is kept once.
 struct Known {
   std::map<std::string_view, SharedText> texts;  ///< of coordinate systems
-  AttributeLayout attributes;                    ///< of the input before
+  /// What inputs are transformed from, by what their headers tell: text and GeoTIFF keys.
+  std::map<std::pair<std::string, std::string>, std::string> transformed_from;
+  AttributeLayout attributes;  ///< of the input before
 };
 
 /// What reading the header of an input gave.
@@ -62,12 +65,22 @@ struct Surveyed {
   SourceFacts::Input input;
 };
 
-Surveyed survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options) {
+/// As system_to_transform(), which takes longer than to read a small file.
+std::string known_system_to_transform(const PointHeader& header, const HeaderSurveyOptions& options,
+                                      Known& known) {
+  std::pair key(header.crs.text(), std::string(as_text(header.crs_keys.directory)));
+  const auto found = known.transformed_from.find(key);
+  if (found != known.transformed_from.end()) return found->second;
+  std::string from = system_to_transform(header, options.crs, options.transform, options.warn);
+  return known.transformed_from.emplace(std::move(key), std::move(from)).first->second;
+}
+
+Surveyed survey(FileSystem& files, const std::string& path, const HeaderSurveyOptions& options,
+                Known& known) {
   Surveyed all;
   auto reader = open_point_reader(files, path, options.reader);
   if (options.transform.changes_plane()) {
-    all.input.transformed_from =
-        system_to_transform(reader->header(), options.crs, options.transform, options.warn);
+    all.input.transformed_from = known_system_to_transform(reader->header(), options, known);
   }
   all.reader = transformed(std::move(reader), all.input.transformed_from, options.transform,
                            options.reader.skip_invalid);
@@ -136,7 +149,7 @@ HeaderSurvey survey_headers(FileSystem& files, const std::vector<std::string>& p
   for (const std::string& path : paths) {
     Surveyed one;
     try {
-      one = survey(files, path, options);
+      one = survey(files, path, options, known);
     } catch (const InvalidArgument&) {
       throw;
     } catch (const Failure& error) {

@@ -4,11 +4,9 @@
 
 #include <cmath>
 #include <cstddef>
-#include <mutex>
 #include <utility>
 #include <vector>
 
-#include "formats/gdal/gdal.h"
 #include "src/error.h"
 #include "src/geometry/lattice.h"
 #include "stream/source/source_crs.h"
@@ -17,34 +15,6 @@
 namespace spillway::stream {
 namespace {
 
-/// As many as threads use at a time: each is for one of them.
-class TransformPool {
- public:
-  TransformPool(std::string from, std::string to) : from_(std::move(from)), to_(std::move(to)) {}
-
-  [[nodiscard]] std::unique_ptr<CrsTransform> take() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        auto transform = std::move(idle_.back());
-        idle_.pop_back();
-        return transform;
-      }
-    }
-    return gdal().create_transform(from_, to_);
-  }
-  void give_back(std::unique_ptr<CrsTransform> transform) {
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(transform));
-  }
-
- private:
-  const std::string from_;
-  const std::string to_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<CrsTransform>> idle_;
-};
-
 class TransformedPoints final : public PointReader {
  public:
   TransformedPoints(std::unique_ptr<PointReader> reader, const std::string& from,
@@ -52,11 +22,11 @@ class TransformedPoints final : public PointReader {
       : reader_(std::move(reader)),
         header_(reader_->header()),
         own_lattice_(header_.lattice),
+        from_(from),
         transform_(transform),
         skip_invalid_(skip_invalid) {
     if (transform_.z_multiplier != 1) scale_heights();
     if (from.empty()) return;
-    pool_ = std::make_unique<TransformPool>(from, transform_.to);
     header_.lattice.reset();
     header_.extent.reset();
     header_.regions.clear();
@@ -72,7 +42,7 @@ class TransformedPoints final : public PointReader {
   bool fetch(RawPoints& raw) override { return reader_->fetch(raw); }
   void decode(RawPoints& raw, PointBlock& block) const override {
     reader_->decode(raw, block);
-    if (pool_) {
+    if (!from_.empty()) {
       bring(block);
     } else if (!header_.lattice) {
       for (LatticePoint& point : block.points) point[2] *= transform_.z_multiplier;
@@ -111,9 +81,9 @@ class TransformedPoints final : public PointReader {
       y[i] = point[1];
       z[i] = point[2];
     }
-    auto transform = pool_->take();
+    auto transform = transform_.idle->take(from_, transform_.to);
     transform->apply(x, y, z);
-    pool_->give_back(std::move(transform));
+    transform_.idle->give_back(from_, std::move(transform));
     const auto is_point = [&](std::size_t i) {
       return std::isfinite(x[i]) && std::isfinite(y[i]) && std::isfinite(z[i]);
     };
@@ -138,12 +108,30 @@ class TransformedPoints final : public PointReader {
   std::unique_ptr<PointReader> reader_;
   PointHeader header_;
   std::optional<IntegerLattice> own_lattice_;
+  std::string from_;  ///< empty: x and y stay
   PointTransform transform_;
   bool skip_invalid_;
-  std::unique_ptr<TransformPool> pool_;  ///< null: x and y stay
 };
 
 }  // namespace
+
+std::unique_ptr<CrsTransform> IdleTransforms::take(const std::string& from, const std::string& to) {
+  {
+    const std::lock_guard lock(mutex_);
+    auto& idle = idle_[from];
+    if (!idle.empty()) {
+      auto transform = std::move(idle.back());
+      idle.pop_back();
+      return transform;
+    }
+  }
+  return gdal().create_transform(from, to);
+}
+
+void IdleTransforms::give_back(const std::string& from, std::unique_ptr<CrsTransform> transform) {
+  const std::lock_guard lock(mutex_);
+  idle_[from].push_back(std::move(transform));
+}
 
 std::string system_to_transform(const PointHeader& header, const CrsChoice& choice,
                                 const PointTransform& transform,
@@ -159,7 +147,8 @@ std::string system_to_transform(const PointHeader& header, const CrsChoice& choi
                   ErrorCode::kBadInput, {.file = header.name, .remedy = Remedy::kGivenCrs});
   }
   if (gdal().same_crs(from, transform.to)) return "";
-  static_cast<void>(gdal().create_transform(from, transform.to));  // a failure is told at once
+  // A failure is told at once.
+  transform.idle->give_back(from, transform.idle->take(from, transform.to));
   return from;
 }
 

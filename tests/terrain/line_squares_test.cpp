@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "tests/terrain/line_length.h"
+
 namespace spillway::test {
 namespace {
 
@@ -22,14 +24,6 @@ Pieces cut(const Line& line, double side) {
     pieces.emplace_back(square, Line(points.begin(), points.end()));
   });
   return pieces;
-}
-
-double length_of(const Line& line) {
-  double length = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    length += std::hypot(line[i][0] - line[i - 1][0], line[i][1] - line[i - 1][1]);
-  }
-  return length;
 }
 
 Line random_line(std::mt19937& random, bool whole) {

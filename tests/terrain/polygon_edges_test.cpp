@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/terrain/line_length.h"
+
 namespace spillway::test {
 namespace {
 
@@ -21,14 +23,6 @@ std::vector<Line> cut(const PolygonEdges& polygon, const Line& line) {
     pieces.emplace_back(points.begin(), points.end());
   });
   return pieces;
-}
-
-double length_of(const Line& line) {
-  double length = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    length += std::hypot(line[i][0] - line[i - 1][0], line[i][1] - line[i - 1][1]);
-  }
-  return length;
 }
 
 constexpr int kCells = 6;

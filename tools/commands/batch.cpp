@@ -458,7 +458,7 @@ Subcommand add_batch(CommandLine& root) {
     if (!options->resume) refuse_given(app, {"--checkpoint-every"}, "without --resume");
     return Batch(root, *options).run();
   };
-  return {&app, run, false, true};
+  return {&app, run};
 }
 
 }  // namespace spillway::command

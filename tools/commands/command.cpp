@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "src/distributed/ranks.h"
@@ -97,20 +98,7 @@ class CommandTree {
  public:
   explicit CommandTree(std::span<const AddSubcommand> table) {
     root_.set_footer(kExamples);
-    for (const AddSubcommand add : table) {
-      subcommands_.push_back(add(root_));
-      added_by_.push_back(add);
-    }
-  }
-
-  /// What adds the given subcommand, if that needs no others; null otherwise.
-  [[nodiscard]] AddSubcommand given_alone() const {
-    for (std::size_t s = 0; s < subcommands_.size(); ++s) {
-      const Subcommand& subcommand = subcommands_[s];
-      if (subcommand.app != root_.given_subcommand()) continue;
-      return subcommand.needs_others ? nullptr : added_by_[s];
-    }
-    return nullptr;
+    for (const AddSubcommand& subcommand : table) subcommands_.push_back(subcommand.add(root_));
   }
 
   [[nodiscard]] CommandLine& root() { return root_; }
@@ -134,8 +122,27 @@ class CommandTree {
  private:
   CommandLine root_{"spillway", kDescription, version_text()};
   std::vector<Subcommand> subcommands_;
-  std::vector<AddSubcommand> added_by_;  ///< each of them
 };
+
+/// Of the subcommand that the first word names alone, as options of others take memory all along;
+/// of all of them where that needs others, or there is none.
+std::unique_ptr<CommandTree> tree_for(const std::string& word,
+                                      std::span<const AddSubcommand> table) {
+  const auto given = std::ranges::find(table, std::string_view(word), &AddSubcommand::name);
+  const bool stands_alone = given != table.end() && !given->needs_others;
+  return std::make_unique<CommandTree>(stands_alone ? std::span(&*given, 1) : table);
+}
+
+/// What is wrong with these words, as seen with all subcommands.
+UsageError error_of(const std::vector<std::string>& words, std::span<const AddSubcommand> table) {
+  CommandTree tree(table);
+  try {
+    tree.root().parse(with_present_names(words));
+  } catch (const ArgumentError& error) {
+    return usage_error(tree.root(), error.what());
+  }
+  return usage_error(tree.root(), "");
+}
 
 }  // namespace
 
@@ -150,11 +157,9 @@ void check_command_line(const std::vector<std::string>& arguments) {
 }
 
 int run_command(int argc, const char* const* argv, std::span<const AddSubcommand> table) {
-  auto tree = std::make_unique<CommandTree>(table);
-  CommandLine& root = tree->root();
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) {
-    write_to_standard_error(root.help());
+    write_to_standard_error(CommandTree(table).root().help());
     return kExitUsage;
   }
   if (words.front() == "version") words.front() = "--version";
@@ -165,12 +170,13 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
     if (of_itself) words.erase(words.begin());
     words.emplace_back("--help");
   }
-  words = with_present_names(std::move(words));
+  const std::unique_ptr<CommandTree> tree = tree_for(words.front(), table);
+  CommandLine& root = tree->root();
   Request request{};
   try {
-    request = root.parse(words);
-  } catch (const ArgumentError& error) {
-    throw usage_error(root, error.what());
+    request = root.parse(with_present_names(words));
+  } catch (const ArgumentError&) {
+    throw error_of(words, table);
   }
   switch (request) {
     case Request::kHelp:
@@ -187,11 +193,6 @@ int run_command(int argc, const char* const* argv, std::span<const AddSubcommand
       break;
   }
   refuse_empty_values(root);
-  // Options of the others would take memory all along.
-  if (const AddSubcommand given = tree->given_alone()) {
-    tree = std::make_unique<CommandTree>(std::span(&given, 1));
-    tree->root().parse(words);
-  }
   let_go_of_program_pages();
   return tree->run();
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/options/command_line.h"
@@ -13,13 +14,16 @@ namespace spillway::command {
 /// A subcommand in the tree of options, and what to do once the command line is parsed.
 struct Subcommand {
   CommandLine* app;
-  std::function<int()> run;   ///< returns the exit code
-  bool over_ranks = false;    ///< works together with the other processes of mpirun
-  bool needs_others = false;  ///< looks at the options of other subcommands
+  std::function<int()> run;  ///< returns the exit code
+  bool over_ranks = false;   ///< works together with the other processes of mpirun
 };
 
-/// Adds a subcommand to the tree.
-using AddSubcommand = Subcommand (*)(CommandLine& root);
+/// What adds the subcommand of a name to the tree.
+struct AddSubcommand {
+  std::string_view name;
+  Subcommand (*add)(CommandLine& root);
+  bool needs_others = false;  ///< looks at the options of other subcommands
+};
 
 /// The table of all subcommands, in the order in which help lists them.
 std::span<const AddSubcommand> subcommands();

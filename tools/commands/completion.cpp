@@ -175,7 +175,7 @@ Subcommand add_completion(CommandLine& root) {
   CommandLine& app = root.add_subcommand("completion", "Print a shell's completion script");
   app.set_footer(kExamples);
   add_choice(app, "SHELL", *shell, {"bash", "zsh", "fish"}, "Which shell").required();
-  return {&app, [&root, shell] { return run(root, *shell); }, false, true};
+  return {&app, [&root, shell] { return run(root, *shell); }};
 }
 
 }  // namespace spillway::command

@@ -115,7 +115,7 @@ int run(const CommandLine& root) {
 Subcommand add_manual(CommandLine& root) {
   CommandLine& app = root.add_subcommand("manual", "Print the man page");
   app.set_footer("Example:\n  spillway manual | man -l -");
-  return {&app, [&root] { return run(root); }, false, true};
+  return {&app, [&root] { return run(root); }};
 }
 
 }  // namespace spillway::command

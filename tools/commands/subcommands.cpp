@@ -22,8 +22,16 @@ namespace spillway::command {
 #define SPILLWAY_DECLARE(NAME) Subcommand add_##NAME(CommandLine& root);
 SPILLWAY_SUBCOMMANDS(SPILLWAY_DECLARE)
 
+namespace {
+
+constexpr bool needs_others(std::string_view name) {
+  return name == "batch" || name == "completion" || name == "manual";
+}
+
+}  // namespace
+
 std::span<const AddSubcommand> subcommands() {
-#define SPILLWAY_LIST(NAME) add_##NAME,
+#define SPILLWAY_LIST(NAME) {#NAME, add_##NAME, needs_others(#NAME)},
   static constexpr AddSubcommand kAll[] = {SPILLWAY_SUBCOMMANDS(SPILLWAY_LIST)};
   return kAll;
 }

@@ -257,7 +257,8 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
     throw InvalidArgument(
         fmt::format("heights are multiplied by a number above 0, not by {}", options.z_multiplier));
   }
-  how.transform = {checked_crs(options.to_crs), options.z_multiplier};
+  how.transform = {checked_crs(options.to_crs), options.z_multiplier,
+                   std::make_shared<IdleTransforms>()};
   if (context.options().warning) how.warn = context.options().warning;
   if (context.options().detail) how.detail = context.options().detail;
   // Over ranks the exchange of the points is still to come.
@@ -306,9 +307,8 @@ void OpenedPoints::check_input(const PointOptions& options, const Context& conte
 /// A coordinate system that tells the unit of heights would be false then.
 void OpenedPoints::check_multiplied(const PointOptions& options, const Context& context) const {
   if (!input_->has_heights()) throw InvalidArgument("the points have no z to multiply");
-  const std::string& crs = input_->crs();
-  const bool tells_heights = is_compound_wkt(crs) || crs.find('+') != std::string::npos;
-  if (!tells_heights || !options.crs.empty() || !context.options().warning) return;
+  if (!may_tell_heights(input_->crs()) || !options.crs.empty() || !context.options().warning)
+    return;
   context.options().warning(
       "warning: heights are multiplied, but the coordinate system still tells the unit that they "
       "had; give another system in its place");

@@ -21,17 +21,17 @@ std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
                                     const MeshFormat& format, const Context& context,
                                     RunWatch& watch) {
   const TileCounts& counts = divider_.counts(tile);
-  MeshTotals totals = TileMesh(header_, counts, records_, tile).totals();
+  TileMesh mesh(header_, counts, records_, tile);
+  MeshTotals totals = mesh.totals();
   if (format.has_totals) {
-    TileMesh mesh(header_, counts, records_, tile);
+    TileMesh same(header_, counts, records_, tile);
     CheckerOptions how;
     how.threads = context.threads();
-    const CheckReport counted = count_mesh_stream(mesh, how);
+    const CheckReport counted = count_mesh_stream(same, how);
     totals.canonical_hash = counted.canonical_hash;
     totals.hull_facets = counted.hull_facets;
   }
   if (&format == &kGpkgMesh) tell_lost_layers(kGeoPackage, path, context);
-  TileMesh mesh(header_, counts, records_, tile);
   const auto writer = open_mesh_stream_writer(disk(), path, format, mesh.header(), scratch_);
   pass_mesh(mesh, header_.attributes, *writer, watch, context.threads());
   writer->finish(totals);

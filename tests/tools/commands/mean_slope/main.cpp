@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
   using namespace spillway::test;  // NOLINT(google-build-using-namespace)
   const auto all = subcommands();
   std::vector<AddSubcommand> table(all.begin(), all.end());
-  table.push_back(add_mean_slope);
+  table.push_back({"mean-slope", add_mean_slope});
   return run_program(argc, argv, table);
 }
