@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include <array>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -14,6 +13,7 @@
 #include "src/distributed/ranks.h"
 #include "src/distributed/shared_file.h"
 #include "src/error.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::test {
 namespace {
@@ -43,17 +43,17 @@ TEST(OneRank, IsAGroupOfItsOwn) {
 }
 
 TEST(OneRank, SharedFileIsAFile) {
-  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "one_rank";
+  const TemporaryFiles files;
+  const std::string path = files.path("shared");
   const Ranks ranks = Ranks::all();
   {
-    SharedFile file(ranks, path.string());
+    SharedFile file(ranks, path);
     file.write(3, bytes_of("def"));
     file.write(0, bytes_of("abc"));
     file.close();
   }
   std::ifstream in(path);
   EXPECT_EQ(std::string(std::istreambuf_iterator(in), {}), "abcdef");
-  std::filesystem::remove(path);
   EXPECT_THROW(SharedFile(ranks, "/nowhere/at/all"), Failure);
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "formats/meshes/npy/npy_format.h"
 #include "formats/meshes/ply/ply_format.h"
@@ -13,6 +11,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "formats/meshes/vtu/vtu_writer.h"
 #include "formats/points/npy/npy_header.h"
+#include "tests/formats/inputs/temporary_files.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/mesh_writer_helpers.h"
 
@@ -448,15 +447,13 @@ TEST(NpyAttributes, AreReadByNumPy) {
   if (std::system("python3 -c 'import numpy' 2>/dev/null") != 0) GTEST_SKIP() << "no NumPy";
   Mesh mesh;
   const FaultyFileSystem files = npy_files(mesh);
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / "numpy_attributes.npy";
-  std::ofstream(file, std::ios::binary) << files.files.at("a_attributes.npy");
+  const TemporaryFiles folder;
+  const std::string file = folder.put("attributes.npy", files.files.at("a_attributes.npy"));
   const std::string program = fmt::format(
       "import numpy; a = numpy.load('{}'); assert a['three'].shape == (4, 3); "
       "assert list(a['of_uint16']) == [{}]",
-      file.string(), fmt::join(numbers_of(mesh, "of_uint16"), ", "));
+      file, fmt::join(numbers_of(mesh, "of_uint16"), ", "));
   EXPECT_EQ(std::system(("python3 -c \"" + program + '"').c_str()), 0);
-  std::filesystem::remove(file);
 }
 
 TEST(PlyAttributes, AreInRecordsOfRanksAsInAFileOfOneProcess) {

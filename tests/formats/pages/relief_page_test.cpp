@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -15,6 +14,7 @@
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/json.h"
 #include "formats/pages/base64.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::test {
 namespace {
@@ -39,11 +39,11 @@ TEST(Base64, IsThatOfRfc4648) {
 
 /// What a page is when it is written.
 std::string written(const ReliefPage& page) {
-  const std::string path = ::testing::TempDir() + "relief_page_test.html";
+  const TemporaryFiles files;
+  const std::string path = files.path("page.html");
   const std::uint64_t bytes = write_relief_page(disk(), path, page);
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::filesystem::remove(path);
   EXPECT_EQ(text.size(), bytes);
   return text;
 }

@@ -1,4 +1,5 @@
 #include "stream/checkpoint/run_identity.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,13 +53,13 @@ TEST(RunIdentity, NamesAFewDifferencesAndCountsTheOthers) {
 
 /// A state that was made of other points must not be gone on with.
 TEST(RunIdentity, OfAFileKnowsItsSizeAndTimeOfChange) {
-  const fs::path path = fs::path(::testing::TempDir()) / "run_identity_test";
+  const TemporaryFiles files;
+  const fs::path path = files.put("input", "points");
   const auto now = [&] {
     RunIdentity identity;
     identity.add_file("input", path.string());
     return identity;
   };
-  std::ofstream(path) << "points";
   const fs::file_time_type time = fs::last_write_time(path);
   const RunIdentity first = now();
   EXPECT_EQ(now().difference_from(first), "");

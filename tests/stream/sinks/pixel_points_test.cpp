@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <random>
 #include <thread>
 
@@ -15,6 +14,7 @@
 #include "formats/disk/private_file.h"
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::test {
 namespace {
@@ -99,17 +99,15 @@ TEST(PixelPoints, APixelMayHaveMorePointsThanMemoryHolds) {
 }
 
 TEST(PixelPoints, AnotherProcessGoesOn) {
-  const std::string folder = ::testing::TempDir() + "/pixel_points";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
+  const TemporaryFiles files;
   std::vector<PointInPixel> sorted = random_points(40'000, 3, 9);
   const std::vector<PointInPixel> points = sorted;
   std::ranges::sort(sorted);
   const std::span<const PointInPixel> all(points);
-  const std::string file = folder + "/state";
+  const std::string file = files.path("state");
   std::uint64_t made = 0;
   {
-    KeptScratchFolder scratch(folder + "/scratch", std::nullopt);
+    KeptScratchFolder scratch(files.path("scratch"), std::nullopt);
     PixelPoints killed(100'000, scratch);
     killed.add(all.first(25'000));
     StateWriter writer(create_private_file(file, file));
@@ -118,8 +116,8 @@ TEST(PixelPoints, AnotherProcessGoesOn) {
     made = scratch.files_made();
     killed.add(all.subspan(25'000));  // which merges runs that were saved
   }
-  KeptScratchFolder scratch(folder + "/scratch", std::nullopt);
-  StateReader reader(disk().open(file), folder);
+  KeptScratchFolder scratch(files.path("scratch"), std::nullopt);
+  StateReader reader(disk().open(file), file);
   reader.use_scratch(scratch);
   scratch.go_on_after(made);
   PixelPoints store(100'000, scratch);
@@ -129,7 +127,6 @@ TEST(PixelPoints, AnotherProcessGoesOn) {
   for (std::uint64_t tile = 0; tile < 3; ++tile) {
     EXPECT_TRUE(read_tile(store, tile) == of_tile(sorted, tile)) << tile;
   }
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "tests/error_facts.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::test {
 namespace {
@@ -102,8 +102,8 @@ TEST(RefuseChangedInput, IsRefusedWhereItsPointsLieElsewhere) {
 }
 
 TEST(RefuseChangedInput, OfAnotherSizeIsRefused) {
-  const std::string path = ::testing::TempDir() + "changed_input_test";
-  std::ofstream(path) << "twelve bytes";
+  const TemporaryFiles files;
+  const std::string path = files.put("input", "twelve bytes");
   EXPECT_EQ(bytes_of_file(path), 12U);
   const auto refused = [&](std::optional<std::uint64_t> bytes) {
     SourceFacts::Input input = surveyed();

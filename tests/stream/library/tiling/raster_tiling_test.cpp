@@ -5,14 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "src/error.h"
 #include "stream/library/tiling/square_tiling.h"
+#include "tests/formats/inputs/temporary_files.h"
 
 namespace spillway::test {
 namespace {
@@ -80,18 +80,16 @@ TEST(SquareTiling, TellsWhyARasterCannotBeCut) {
 }
 
 TEST(SquareTiling, FindsFilesThatLookLikeOthersOfItsTiles) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "d.tiles";
-  std::filesystem::create_directory(folder);
+  const TemporaryFiles files;
   for (const char* name :
        {"d_0_0.tif", "d_-10_2.5.tif", "d_a_0.tif", "xd_0_0.tif", "d_1_1.tif.part"}) {
-    std::ofstream(folder / name) << "x";
+    std::ignore = files.put(name, "x");
   }
-  std::ofstream(folder / "a^\\1[+]_5_5.tif") << "x";
-  EXPECT_EQ(SquareTiling(folder / "a^\\1[+]_{x}_{y}.tif", 10).others_than({}).size(), 1U);
-  const SquareTiling tiling(folder / "d_{x}_{y}.tif", 10);
-  EXPECT_EQ(tiling.others_than({folder / "d_0_0.tif"}),
-            (std::vector<std::string>{folder / "d_-10_2.5.tif"}));
-  std::filesystem::remove_all(folder);
+  std::ignore = files.put("a^\\1[+]_5_5.tif", "x");
+  EXPECT_EQ(SquareTiling(files.path("a^\\1[+]_{x}_{y}.tif"), 10).others_than({}).size(), 1U);
+  const SquareTiling tiling(files.path("d_{x}_{y}.tif"), 10);
+  EXPECT_EQ(tiling.others_than({files.path("d_0_0.tif")}),
+            (std::vector<std::string>{files.path("d_-10_2.5.tif")}));
 }
 
 TEST(RasterTiling, ItsVrtIsCalledAsItsFilesWithoutTheirPlaces) {
