@@ -64,17 +64,28 @@ auto plane_box_setter(std::optional<Extent> Options::*member) {
   };
 }
 
+/// What is said of tables is beside what else is said of points.
+template <typename T>
+auto table_getter(T TextTable::*member) {
+  return [member](const PointOptions& options) { return options.text.*member; };
+}
+template <typename T>
+auto table_setter(T TextTable::*member) {
+  return [member](PointOptions& options, T value) { options.text.*member = std::move(value); };
+}
+
 void bind_point_options(py::module_& module) {
   py::class_<PointOptions>(module, "PointOptions")
       .def(py::init())
       .def_readwrite("dimension", &PointOptions::dimension)
       .def_readwrite("format", &PointOptions::format)
-      .def_readwrite("columns", &PointOptions::columns)
-      .def_readwrite("column_names", &PointOptions::column_names)
-      .def_readwrite("skip_lines", &PointOptions::skip_lines)
-      .def_readwrite("separator", &PointOptions::separator)
-      .def_readwrite("decimal", &PointOptions::decimal)
-      .def_readwrite("no_header", &PointOptions::no_header)
+      .def_property("columns", table_getter(&TextTable::columns), table_setter(&TextTable::columns))
+      .def_property("column_names", table_getter(&TextTable::column_names), table_setter(&TextTable::column_names))
+      .def_property("characters", table_getter(&TextTable::characters), table_setter(&TextTable::characters))
+      .def_property("skip_lines", table_getter(&TextTable::skip_lines), table_setter(&TextTable::skip_lines))
+      .def_property("separator", table_getter(&TextTable::separator), table_setter(&TextTable::separator))
+      .def_property("decimal", table_getter(&TextTable::decimal), table_setter(&TextTable::decimal))
+      .def_property("no_header", table_getter(&TextTable::no_header), table_setter(&TextTable::no_header))
       .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
       .def_readwrite("salvage", &PointOptions::salvage)
       .def_readwrite("skip_broken", &PointOptions::skip_broken)

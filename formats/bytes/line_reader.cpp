@@ -5,13 +5,33 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include "src/error.h"
 
 namespace spillway::formats {
 
 bool LineReader::next(std::string_view& line) {
-  std::size_t searched = 0;
+  if (!read_line(line, 0)) return false;
+  number_ += std::exchange(lines_in_line_, 1);
+  return true;
+}
+
+bool LineReader::extend(std::string_view& line) {
+  const std::size_t before = position() - line_begin_;
+  begin_ -= before;
+  if (!read_line(line, before)) {
+    line = {buffer_.data() + begin_, before};
+    if (line.ends_with('\n')) line.remove_suffix(1);
+    begin_ += before;
+    return false;
+  }
+  ++lines_in_line_;
+  return true;
+}
+
+bool LineReader::read_line(std::string_view& line, std::size_t searched) {
+  const std::size_t before = searched;
   const char* line_end = nullptr;
   while (true) {
     const char* from = buffer_.data() + begin_ + searched;
@@ -21,8 +41,7 @@ bool LineReader::next(std::string_view& line) {
     searched = end_ - begin_;
     if (!refill()) break;
   }
-  if (line_end == nullptr && begin_ == end_) return false;
-  ++number_;
+  if (line_end == nullptr && begin_ + before == end_) return false;
   line_begin_ = position();
   const char* const start = buffer_.data() + begin_;
   const std::size_t length = line_end != nullptr ? line_end - start : end_ - begin_;
@@ -68,13 +87,16 @@ bool LineReader::refill() {
   begin_ = 0;
   const std::span<char> space = std::span(buffer_).subspan(end_);
   if (space.empty()) {
-    const FilePlace line = place_of_line(number_ + 1, position());
+    const bool is_extended = number_ > 0 && position() == line_begin_;
+    const FilePlace line =
+        place_of_line(is_extended ? number_ : number_ + lines_in_line_, position());
     throw BadInput(
         file_.name(),
         fmt::format("{} is longer than {} bytes; this is not text", name_of(line), kLongestLine),
         line);
   }
   const std::size_t got = file_.read(std::as_writable_bytes(space));
+  has_quotes_ = has_quotes_ || std::memchr(space.data(), '"', got) != nullptr;
   end_ += got;
   return got > 0;
 }

@@ -25,6 +25,13 @@ class LineReader {
   /// Sets `line` to the next one without its end, valid until the next call; false at the end.
   bool next(std::string_view& line);
 
+  /// Makes that line longer by the next one, with the line end between them; it keeps its number.
+  /// False, and the line stays what it is, if there is none.
+  bool extend(std::string_view& line);
+
+  /// Whether a double quote may have come so far.
+  [[nodiscard]] bool has_quotes() const { return has_quotes_; }
+
   /// What has been read of the file after that line: most of the first MiB once next() has given
   /// the first line. Valid until the next call.
   [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
@@ -59,6 +66,10 @@ class LineReader {
   }
   static std::string name_of(const FilePlace& line);
 
+  /// Sets `line` to what there is from the first unread byte on, up to an end that is looked for after
+  /// the first `searched` bytes; false if there is no more than these.
+  bool read_line(std::string_view& line, std::size_t searched);
+
   /// Moves the unread bytes to the front and fills up after them; false if there was nothing more.
   bool refill();
 
@@ -71,6 +82,8 @@ class LineReader {
   std::uint64_t gap_begin_ = 0;  // the last lines that were passed over are [gap_begin_, gap_end_)
   std::uint64_t gap_end_ = 0;
   std::uint64_t number_ = 0;
+  std::uint64_t lines_in_line_ = 1;  // 2 and more: it was extended
+  bool has_quotes_ = false;
   bool numbered_ = true;
 };
 

@@ -12,6 +12,7 @@
 #include "formats/gdal/geotiff_key_records.h"
 #include "formats/gdal/polygon_layer.h"
 #include "formats/gdal/raster.h"
+#include "formats/gdal/raster_source.h"
 #include "formats/gdal/vector_layer.h"
 
 namespace spillway::formats {
@@ -133,6 +134,11 @@ class Gdal {
   [[nodiscard]] virtual std::string mosaic_text(const std::vector<std::string>& rasters,
                                                 const PixelGrid& place,
                                                 const std::string& path) const = 0;
+
+  /// Opens a raster of any format that GDAL reads. Throws Failure if it is none, and where it is not
+  /// told where its pixels lie.
+  [[nodiscard]] virtual std::unique_ptr<RasterSource> open_raster(
+      const std::string& path) const = 0;
 
   /// Where an existing raster lies. Throws Failure if its pixels are not square, north up.
   [[nodiscard]] virtual RasterGrid read_raster_grid(const std::string& path) const = 0;

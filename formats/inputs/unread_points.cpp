@@ -16,15 +16,8 @@ struct Beginning {
   std::string_view what;
 };
 
-constexpr std::string_view kPcd = "a cloud of the Point Cloud Library (PCD)";
-
 constexpr std::array kBeginnings = {
-    Beginning{"# .PCD", kPcd},
-    Beginning{"VERSION .7", kPcd},
-    Beginning{"VERSION 0.7", kPcd},
     Beginning{"ASTM-E57", "E57"},
-    Beginning{"NCOLS ", "a raster (Arc/Info ASCII grid)"},
-    Beginning{"DSAA", "a raster (Surfer grid)"},
 };
 
 /// Whether all of the line is so many numbers.

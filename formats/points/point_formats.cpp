@@ -11,7 +11,9 @@
 #include "formats/points/las/las_format.h"
 #include "formats/points/laz/laz_format.h"
 #include "formats/points/npy/npy_format.h"
+#include "formats/points/pcd/pcd_format.h"
 #include "formats/points/ply/ply_format.h"
+#include "formats/points/raster/raster_format.h"
 #include "formats/points/spp/spp_format.h"
 #include "formats/points/text/text_format.h"
 #include "src/error.h"
@@ -27,7 +29,9 @@ constexpr const PointFormat* kFormats[] = {
     &kTextPoints,
     &kNpyPoints,
     &kPlyPoints,
+    &kPcdPoints,
     &kSppPoints,
+    &kRasterPoints,
 };
 // clang-format on
 

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace spillway {
@@ -22,6 +23,18 @@ namespace spillway {
 struct LatticeInfo {
   std::array<double, 3> scale{1, 1, 1};
   std::array<double, 3> offset{0, 0, 0};
+};
+
+/// How a table of text was understood.
+struct TableInfo {
+  std::string separator{};           ///< "comma", "semicolon", "tab", "blanks", or "none"
+  char decimal = '.';                ///< the decimal sign
+  std::vector<std::string> names{};  ///< of all columns; empty if they have none
+  std::vector<int> columns{};        ///< those of x, y and, if there is one, z, from 1
+  std::vector<std::array<int, 2>> characters{};  ///< or the characters, likewise
+  bool counts_downwards = false;          ///< z is the number in its column, with the other sign
+  std::uint64_t first_line = 0;           ///< the line of the first row, from 1; 0: none
+  std::vector<std::string> first_rows{};  ///< up to three, up to 500 bytes of each
 };
 
 /// What a point file holds. Texts that it does not tell are empty.
@@ -52,6 +65,10 @@ struct PointsInfo {
   std::vector<std::uint64_t> classes{};
   /// Likewise of return 0 to 255 of their pulse.
   std::vector<std::uint64_t> returns{};
+  /// How many of these points have each of the flags of LAS: "withheld", "overlap" and so on. Empty
+  /// if they have none.
+  std::vector<std::pair<std::string, std::uint64_t>> flags{};
+  std::optional<TableInfo> table{};  ///< of text
 };
 
 /// Reads all points of a file that the options ask for, so that counts and extent are exact

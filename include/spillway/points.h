@@ -82,26 +82,33 @@ struct Returns {
   std::vector<int> numbers{};  ///< 1 to 15
 };
 
+/// What is said of how a table of text is written; the rest is what the text itself shows
+/// (docs/formats-points.md). Of `columns`, `column_names` and `characters` one at most is given.
+struct TextTable {
+  /// The columns of x, y and, if there is a third one, z, counted from 1.
+  std::vector<int> columns{};
+  /// The names of these columns as they stand in the header, in any case of letters.
+  std::vector<std::string> column_names{};
+  /// The first and the last character of these columns in each line, counted from 1: columns of
+  /// fixed width, which nothing separates.
+  std::vector<std::array<int, 2>> characters{};
+  std::uint64_t skip_lines = 0;  ///< lines before the first one that is looked at
+  /// What separates columns: a comma, a semicolon, a tab, or a blank for any blanks and tabs; 0: as
+  /// the text shows.
+  char separator = 0;
+  char decimal = 0;        ///< the decimal sign, a point or a comma; 0: as the text shows
+  bool no_header = false;  ///< the first line is a row, and comments name no columns
+};
+
 /// Which points of files are used, and how these are read. Filters apply in the order of members.
 struct PointOptions {
   /// In which they will be triangulated, 2 to 6; 0: they will not be. Coordinates beyond z are
   /// attributes called x4, x5 and x6, or the columns of an npy array without names.
   int dimension = 2;
   std::string format{};  ///< "las", "text", ... ; empty: by first bytes and name
-  /// Of text: the columns of x, y and, if there is a third one, z, counted from 1; empty: by their
-  /// names, or, where these are missing, the first ones.
-  std::vector<int> columns{};
-  /// Of text, instead: the names of the columns of x, y and, if there is a third one, z, as they
-  /// stand in its header, in any case of letters.
-  std::vector<std::string> column_names{};
-  std::uint64_t skip_lines = 0;  ///< of text: lines before the first one that is looked at
-  /// Of text: what separates columns, a comma, a semicolon, a tab, or a blank for any blanks and
-  /// tabs; 0: as the text shows.
-  char separator = 0;
-  char decimal = 0;        ///< of text: the decimal sign, a point or a comma; 0: as the text shows
-  bool no_header = false;  ///< of text: the first line is a row, and comments name no columns
-  /// Leave out and count rows of text, npy and PLY that are no points: what is no number, or not
-  /// finite, or lacks a column. Without it they are an error.
+  TextTable text{};      ///< of text: how it is written
+  /// Leave out and count rows of text, npy, PLY and PCD that are no points: what is no number, or
+  /// not finite, or lacks a column. Without it they are an error.
   bool skip_invalid = false;
   bool keep_withheld = false;        ///< use points that LAS flags as withheld
   std::uint64_t every = 1;           ///< use records 0, n, 2n, ... of each file

@@ -181,6 +181,8 @@ def _put_columns(target: Any, value: Any) -> None:
     columns = list(value)
     if columns and all(isinstance(column, str) for column in columns):
         target.column_names = columns
+    elif columns and all(isinstance(column, Sequence) for column in columns):
+        target.characters = [tuple(_as_list(ends)) for ends in columns]
     else:
         target.columns = _as_list(columns)
 
@@ -263,8 +265,9 @@ _OPTIONS = {
         attribute("format"),
     ),
     "columns": _Option(
-        "sequence of int or of str, optional",
-        "Of text, the columns of x, y and z, counted from 1, or their names.",
+        "sequence of int, of str, or of pairs of int, optional",
+        "Of text, the columns of x, y and z, counted from 1, or their names, or the first and the "
+        "last character of each in a line, counted from 1.",
         "points",
         _put_columns,
     ),
@@ -294,7 +297,7 @@ _OPTIONS = {
     ),
     "skip_invalid": _Option(
         "bool, optional",
-        "Leave out rows of text, npy and PLY that are no points. By default they are an error.",
+        "Leave out rows of text, npy, PLY and PCD that are no points. By default they are an error.",
         "points",
         attribute("skip_invalid"),
     ),

@@ -64,6 +64,7 @@ class PointOptions:
     format: str
     columns: list[int]
     column_names: list[str]
+    characters: list[tuple[int, int]]
     skip_lines: int
     separator: str
     decimal: str

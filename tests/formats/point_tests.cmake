@@ -16,6 +16,7 @@ spillway_test(points_test unit
     formats/points/attribute_round_trip_test.cpp
     formats/points/npy/npy_attributes_test.cpp
     formats/points/npy/npy_reader_test.cpp
+    formats/points/pcd/pcd_points_test.cpp
     formats/points/ply/ply_points_test.cpp
     formats/points/invalid_rows_test.cpp
     formats/points/point_format_test.cpp

@@ -47,7 +47,8 @@ set_target_properties(other_gdal_module PROPERTIES PREFIX "" OUTPUT_NAME spillwa
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/other_version)
 spillway_command_test(cli_input_tests cli
   tools/inputs/cli_clip_test.cpp tools/inputs/cli_crs_test.cpp tools/inputs/cli_filter_test.cpp tools/inputs/cli_inputs_test.cpp
-  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
+  tools/inputs/cli_lattice_test.cpp tools/inputs/cli_salvage_test.cpp
+  tools/inputs/cli_table_layout_test.cpp tools/inputs/cli_table_test.cpp tools/inputs/cli_survey_test.cpp)
 
 spillway_command_test(cli_encoded_tests cli
   tools/inputs/cli_encoded_test.cpp)
@@ -67,7 +68,7 @@ if(SPILLWAY_GDAL)
     tools/commands/cli_dem_gdaldem_test.cpp tools/commands/cli_dem_points_test.cpp
     tools/commands/cli_dem_tiles_test.cpp
     tools/commands/cli_dem_units_test.cpp
-    tools/commands/cli_layers_test.cpp)
+    tools/commands/cli_layers_test.cpp tools/inputs/cli_raster_points_test.cpp)
   target_link_libraries(cli_dem_tests PRIVATE PkgConfig::gdal)
 else()
   add_test(NAME cli_dem_tests COMMAND ${CMAKE_COMMAND} -E echo "rasters need GDAL, which this build has not")

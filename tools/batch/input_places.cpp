@@ -36,12 +36,12 @@ void refuse_what_opens_once(const std::string& path) {
 std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context& context) {
   InputOptions given;
   given.format = value_of(job, "input-format");
-  given.columns = value_of(job, "columns");
-  given.separator = value_of(job, "separator");
-  given.decimal = value_of(job, "decimal");
-  given.no_header = job.options.contains("no-header");
+  given.table.columns = value_of(job, "columns");
+  given.table.separator = value_of(job, "separator");
+  given.table.decimal = value_of(job, "decimal");
+  given.table.no_header = job.options.contains("no-header");
   if (const auto lines = parse_number(value_of(job, "skip-lines"))) {
-    given.skip_lines = static_cast<std::uint64_t>(*lines);
+    given.table.skip_lines = static_cast<std::uint64_t>(*lines);
   }
   given.crs = value_of(job, "crs");
   given.force_crs = job.options.contains("force-crs");

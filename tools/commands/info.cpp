@@ -110,6 +110,33 @@ Json counts_json(const std::vector<std::uint64_t>& counts) {
   return json;
 }
 
+/// {"withheld": 12, "overlap": 0}: how many points have each flag; null without flags.
+Json flags_json(const std::vector<std::pair<std::string, std::uint64_t>>& flags) {
+  Json json;
+  for (const auto& [name, count] : flags) json[name] = count;
+  return json;
+}
+
+/// How a table of text was understood.
+Json table_json(const TableInfo& table) {
+  Json json;
+  json["separator"] = table.separator;
+  json["decimal"] = table.decimal == ',' ? "comma" : "point";
+  json["names"] = table.names.empty() ? Json(nullptr) : Json(table.names);
+  json["columns"] = Json(table.columns);
+  if (!table.characters.empty()) {
+    std::vector<std::string> ranges;
+    for (const auto& [first, last] : table.characters) {
+      ranges.push_back(fmt::format("{}-{}", first, last));
+    }
+    json["columns"] = Json(ranges);
+  }
+  json["counts_downwards"] = table.counts_downwards;
+  json["first_line"] = table.first_line == 0 ? Json(nullptr) : Json(table.first_line);
+  json["first_rows"] = Json(table.first_rows);
+  return json;
+}
+
 /// The mean distance of neighbours, if points lay on a grid over the extent.
 Json spacing(const std::optional<Extent>& extent, std::uint64_t points) {
   const Json per_area = density(extent, points);
@@ -128,6 +155,15 @@ class Total {
     coordinates_ = std::max(coordinates_, info.coordinates);
     add_counts(info.classes, classes_);
     add_counts(info.returns, returns_);
+    for (const auto& [name, count] : info.flags) {
+      const auto known =
+          std::ranges::find(flags_, name, &std::pair<std::string, std::uint64_t>::first);
+      if (known == flags_.end()) {
+        flags_.emplace_back(name, count);
+      } else {
+        known->second += count;
+      }
+    }
     if (!info.extent) return;
     if (!extent_) extent_ = info.extent;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -149,6 +185,7 @@ class Total {
     json["spacing"] = spacing(extent_, points_);
     json["classes"] = counts_json(classes_);
     json["returns"] = counts_json(returns_);
+    json["flags"] = flags_json(flags_);
     return json;
   }
 
@@ -166,6 +203,7 @@ class Total {
   std::optional<Extent> extent_;
   std::vector<std::uint64_t> classes_;
   std::vector<std::uint64_t> returns_;
+  std::vector<std::pair<std::string, std::uint64_t>> flags_;
 };
 
 /// `fast`: of the header alone.
@@ -194,6 +232,8 @@ Json points_json(const std::string& path, const PointsInfo& info, bool filtered,
   if (info.cells) json["cells"] = *info.cells;
   json["classes"] = counts_json(info.classes);
   json["returns"] = counts_json(info.returns);
+  json["flags"] = flags_json(info.flags);
+  if (info.table) json["table"] = table_json(*info.table);
   json["attributes"] = attributes_json(info.attributes, info.ranges);
   return json;
 }
@@ -275,16 +315,34 @@ std::string attribute_text(const Json& attribute) {
   return text;
 }
 
+/// Rows stand each in a line of its own.
+std::string table_text(const Json& table) {
+  std::string text = "  table\n";
+  for (const auto& [key, value] : table.members()) {
+    if (key != "first_rows") {
+      text += fmt::format("    {:22} {}\n", key, value_text(value));
+      continue;
+    }
+    text += fmt::format("    {}\n", key);
+    for (const Json& row : value.elements()) {
+      text += fmt::format("      {}\n", printable(row.text()));
+    }
+  }
+  return text;
+}
+
 /// The same keys and values as the JSON, laid out for people: no more digits than mean something.
 std::string describe(const Json& json) {
   std::string text = printable(json.find("name")->text()) + "\n";
   for (const auto& [key, value] : json.members()) {
     if (key == "name") continue;
-    if (value.is_object() && (key == "classes" || key == "returns")) {
+    if (value.is_object() && (key == "classes" || key == "returns" || key == "flags")) {
       text += fmt::format("  {}\n", key);
       for (const auto& [number, count] : value.members()) {
         text += fmt::format("    {:22} {}\n", number, value_text(count));
       }
+    } else if (key == "table") {
+      text += table_text(value);
     } else if (value.is_object()) {
       for (const auto& [inner_key, inner_value] : value.members()) {
         const std::string path = fmt::format("{} {}", key, inner_key);

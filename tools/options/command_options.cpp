@@ -37,6 +37,16 @@ std::vector<double> parse_numbers(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 void add_memory_options(CommandLine& app, MemoryOptions& options) {
   take_parsed(
       app.add_option("--memory", options.limit,

@@ -78,6 +78,9 @@ std::optional<std::vector<std::string>> attribute_names(const std::string& list)
 Option add_dimension(CommandLine& app, int& dimension, const std::string& description,
                      int largest = 3);
 
+/// What stands between the separators.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
 /// A finite decimal number, like 12, -0.5 or 1e6; nothing for any other text, hexadecimal numbers
 /// and such with blanks included.
 std::optional<double> parse_number(std::string_view text);

@@ -23,16 +23,6 @@
 namespace spillway::command {
 namespace {
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 /// All of `text` as a T, or nothing.
 template <typename T>
 std::optional<T> number_of(std::string_view text) {
@@ -53,27 +43,7 @@ bool InputOptions::filters() const {
 void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, if neither name nor first bytes tell it");
-  take_parsed(app.add_option("--columns", options.columns,
-                             "Of text, the columns of x, y, z: as 3,2,4, as PNEZD, or by names as "
-                             "Easting,Northing,Height")
-                  .value_name("LIST"),
-              [](const std::string& text) {
-                if (parse_column_names(text).empty()) parse_columns(text);
-              });
-  take_whole_number(app.add_option("--skip-lines", options.skip_lines,
-                                   "Of text, leave out so many lines at the top"),
-                    0)
-      .value_name("N");
-  take_parsed(app.add_option("--separator", options.separator,
-                             "Of text, what separates columns: comma, semicolon, tab or blanks")
-                  .value_name("SIGN"),
-              parse_separator);
-  take_parsed(
-      app.add_option("--decimal", options.decimal, "Of text, the decimal sign: point or comma")
-          .value_name("SIGN"),
-      parse_decimal);
-  app.add_flag("--no-header", options.no_header,
-               "Of text, the first line is a row, and comments name no columns");
+  add_table_options(app, options.table);
   take_parsed(
       app.add_option("--crs", options.crs,
                      "Coordinate system of inputs that name none: EPSG:n, WKT, or a file with WKT"),
@@ -135,7 +105,7 @@ void add_input_options(CommandLine& app, InputOptions& options) {
                "Use points that LAS files flag as withheld, too")
       .group(group);
   app.add_flag("--skip-invalid", options.skip_invalid,
-               "Leave out rows of text and npy that are not points, and count them")
+               "Leave out rows of text, npy, PLY and PCD that are not points, and count them")
       .group(group);
   app.add_flag("--salvage", options.salvage,
                "Use the intact points of truncated or damaged LAS and LAZ files; count the rest")
@@ -143,83 +113,6 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   app.add_flag("--skip-broken", options.skip_broken,
                "Leave out files that cannot be read; name them at the end, with exit code 1")
       .group(group);
-}
-
-std::vector<std::string> parse_column_names(std::string_view text) {
-  const std::vector<std::string_view> parts = split(text, ',');
-  const auto is_number = [](std::string_view part) {
-    return number_of<std::uint64_t>(part).has_value();
-  };
-  if (parts.size() < 2 || std::ranges::any_of(parts, is_number)) return {};
-  const bool valid = parts.size() <= 3 && std::ranges::none_of(parts, &std::string_view::empty);
-  if (!valid) {
-    throw UsageError(fmt::format(
-        "\"{}\" does not name columns; give the names of x, y and z, or of x and y", text));
-  }
-  return {parts.begin(), parts.end()};
-}
-
-namespace {
-
-struct Sign {
-  std::string_view name;
-  char sign;
-};
-
-char sign_of(std::string_view text, std::span<const Sign> signs) {
-  std::string names;
-  for (const Sign& sign : signs) {
-    if (text == sign.name || text == std::string_view(&sign.sign, 1)) return sign.sign;
-    names += (names.empty() ? "" : ", ") + std::string(sign.name);
-  }
-  throw UsageError(fmt::format("\"{}\" is none of these: {}", text, names));
-}
-
-}  // namespace
-
-char parse_separator(std::string_view text) {
-  constexpr std::array<Sign, 4> kSigns = {
-      {{"comma", ','}, {"semicolon", ';'}, {"tab", '\t'}, {"blanks", ' '}}};
-  return sign_of(text, kSigns);
-}
-
-char parse_decimal(std::string_view text) {
-  constexpr std::array<Sign, 2> kSigns = {{{"point", '.'}, {"comma", ','}}};
-  return sign_of(text, kSigns);
-}
-
-std::vector<int> parse_columns(std::string_view text) {
-  constexpr std::array<std::string_view, 3> kLetters = {"XE", "YN", "ZH"};
-  std::vector<int> columns;
-  bool valid = true;
-  if (std::ranges::all_of(text, [](unsigned char c) { return std::isalpha(c) != 0; })) {
-    std::array<int, 3> found{};
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      const auto letter = static_cast<char>(std::toupper(static_cast<unsigned char>(text[i])));
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (kLetters.at(axis).find(letter) == std::string_view::npos) continue;
-        valid = valid && found.at(axis) == 0;
-        found.at(axis) = static_cast<int>(i) + 1;
-      }
-    }
-    columns.assign(found.begin(), found.end() - (found[2] == 0 ? 1 : 0));
-  } else {
-    for (const std::string_view part : split(text, ',')) {
-      columns.push_back(number_of<std::uint16_t>(part).value_or(0));
-    }
-  }
-  valid = valid && (columns.size() == 2 || columns.size() == 3);
-  for (const int column : columns) {
-    valid = valid && column > 0 && std::ranges::count(columns, column) == 1;
-  }
-  if (!valid) {
-    throw UsageError(
-        fmt::format("\"{}\" does not tell columns; give the numbers of x, y and z, as 3,2,4, or a "
-                    "letter for each column, as PNEZD, with one X or E, one Y or N, and at most "
-                    "one Z or H",
-                    text));
-  }
-  return columns;
 }
 
 std::vector<int> parse_classes(std::string_view text) {
@@ -355,14 +248,7 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
   points.format = options.format;
-  if (!options.columns.empty()) {
-    points.column_names = parse_column_names(options.columns);
-    if (points.column_names.empty()) points.columns = parse_columns(options.columns);
-  }
-  points.skip_lines = options.skip_lines;
-  if (!options.separator.empty()) points.separator = parse_separator(options.separator);
-  if (!options.decimal.empty()) points.decimal = parse_decimal(options.decimal);
-  points.no_header = options.no_header;
+  points.text = text_table(options.table);
   points.skip_invalid = options.skip_invalid;
   points.salvage = options.salvage;
   points.skip_broken = options.skip_broken;

@@ -11,17 +11,14 @@
 #include <vector>
 
 #include "tools/options/command_line.h"
+#include "tools/options/table_options.h"
 
 namespace spillway::command {
 
 /// As on the command line; an empty text is an option that was not given.
 struct InputOptions {
   std::string format;
-  std::string columns;
-  std::uint64_t skip_lines = 0;
-  std::string separator;
-  std::string decimal;
-  bool no_header = false;
+  TableOptions table;
   std::string crs;
   bool force_crs = false;
   std::string to_crs;
@@ -74,24 +71,11 @@ MeshOptions mesh_options(const InputOptions& options, const std::string& format)
 /// and what follows throws UsageError that says what is expected, for take_parsed().
 std::string parse_crs(std::string_view text);
 
-/// Reads the value of --columns where it has names, "Easting,Northing,Height"; none if it has
-/// numbers or letters, for parse_columns().
-std::vector<std::string> parse_column_names(std::string_view text);
-
-/// Reads the values of --separator and --decimal: a sign, or its name.
-char parse_separator(std::string_view text);
-char parse_decimal(std::string_view text);
-
 /// Reads the value of --z-range: the lowest and the highest height.
 std::array<double, 2> parse_z_range(std::string_view text);
 
 /// Reads the value of --keep-class: numbers and ranges, "2,3-5".
 std::vector<int> parse_classes(std::string_view text);
-
-/// Reads the value of --columns: the numbers of x, y and z, "3,2,4" or "3,2", or a letter for each
-/// column from the first on, "PNEZD", of which X or E, Y or N, and Z or H count. Returns numbers
-/// from 1 on.
-std::vector<int> parse_columns(std::string_view text);
 
 /// Reads the value of --returns: "first", "last", "single" and numbers, separated by commas.
 Returns parse_returns(std::string_view text);

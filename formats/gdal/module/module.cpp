@@ -18,6 +18,7 @@
 #include "formats/gdal/module/ogr_clip.h"
 #include "formats/gdal/module/ogr_polygons.h"
 #include "formats/gdal/module/proj_transform.h"
+#include "formats/gdal/module/raster_input.h"
 #include "formats/gdal/vector_drivers.h"
 
 namespace spillway::formats {
@@ -107,6 +108,9 @@ class LoadedGdal : public Gdal {
                                         const PixelGrid& place,
                                         const std::string& path) const override {
     return spillway::formats::mosaic_text(rasters, place, path);
+  }
+  [[nodiscard]] std::unique_ptr<RasterSource> open_raster(const std::string& path) const override {
+    return open_raster_source(path);
   }
   [[nodiscard]] RasterGrid read_raster_grid(const std::string& path) const override {
     return read_geotiff_grid(path);

@@ -109,7 +109,7 @@ struct RawPoints {
 /// What a source says about its points before any is read.
 struct PointHeader {
   std::string name;       ///< as the user gave it, for messages
-  std::string format;     ///< "las", "laz", "copc", "text", "npy", "ply" or "spp"
+  std::string format;     ///< a name of point_formats.h
   std::string version;    ///< the format's own version, e.g. "1.2"; empty if it has none
   int point_format = -1;  ///< LAS point data record format, -1 for others
   int coordinates = 3;    ///< 2 if the points have no z
@@ -124,8 +124,9 @@ struct PointHeader {
   /// What LAS tells besides: of heights, or of a system in case that `crs` cannot be read. Empty if
   /// there is nothing of either.
   GeotiffKeys crs_keys;
-  std::string software;        ///< generating software, LAS only
-  AttributeLayout attributes;  ///< what points have besides coordinates
+  std::string software;                   ///< generating software, LAS only
+  AttributeLayout attributes;             ///< what points have besides coordinates
+  std::shared_ptr<const TextFacts> text;  ///< how a text was understood
   /// What LAS tells besides, if it was asked for.
   std::shared_ptr<const LasMetadata> las_metadata;
   std::vector<std::string> notices;  ///< what was taken where the source leaves some doubt
@@ -150,7 +151,7 @@ struct PointReaderOptions {
   /// Of COPC, levels of the octree finer than this spacing are left out; 0: all are read.
   double resolution = 0;
   TextLayout text{};  ///< of text
-  /// Of text, npy and PLY: leave out and count rows that are no points.
+  /// Of text, npy, PLY and PCD: leave out and count rows that are no points.
   bool skip_invalid = false;
   /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those
   /// that its header does not count. Where lost ones are known of beforehand, PointHeader::lost has

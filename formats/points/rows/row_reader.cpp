@@ -36,7 +36,7 @@ class RowReader : public PointReader {
   explicit RowReader(RowFile file)
       : source_(std::move(file.source)),
         rows_(std::move(file.rows)),
-        decoder_(std::move(file.row), source_->name(), file.skip_invalid),
+        decoder_(std::move(file.row), source_->name(), file.skip_invalid || file.has_empty_rows),
         header_(std::move(file.header)),
         has_fixed_size_(file.has_fixed_size),
         behind_(file.behind),
@@ -51,6 +51,7 @@ class RowReader : public PointReader {
     std::vector<Attribute> attributes;
     for (const AttributeField& field : row.attributes()) attributes.push_back(field.attribute);
     header_.attributes = AttributeLayout(std::move(attributes));
+    if (file.has_empty_rows) header_.count.reset();
     in_pieces_ = has_fixed_size_ && header_.name != "-" && source_->seekable();
   }
 

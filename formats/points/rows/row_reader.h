@@ -36,6 +36,9 @@ struct RowFile {
   /// Whether a row takes row.size() bytes of the file, so that its size can be checked, and rows
   /// can be read from any one on.
   bool has_fixed_size = true;
+  /// Whether rows may be none by the format's own rules, and are left out and counted as invalid:
+  /// then the header that the reader gives does not promise their number.
+  bool has_empty_rows = false;
   /// Bytes after the last row, where sizes are fixed; nothing: unknown.
   std::optional<std::uint64_t> behind = 0;
 };

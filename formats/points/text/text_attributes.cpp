@@ -52,12 +52,12 @@ bool TextAttributes::read(const std::vector<std::string_view>& fields, const Tar
   return store_number(target.type, record + target.at, rounds ? std::nearbyint(number) : number);
 }
 
-bool TextAttributes::append(std::string_view row, std::vector<std::byte>& records) const {
-  const std::vector<std::string_view> fields = text_fields(row, separator_);
+bool TextAttributes::append(std::string_view row, std::vector<std::byte>& records) {
+  put_text_fields(row, separator_, fields_);
   const std::size_t before = records.size();
   records.resize(before + record_size_);
   for (const Target& target : targets_) {
-    if (read(fields, target, &records[before])) continue;
+    if (read(fields_, target, &records[before])) continue;
     records.resize(before);
     return false;
   }

@@ -27,7 +27,7 @@ class TextAttributes {
 
   /// Appends the record of a row; numbers of empty or missing fields are NaN. Returns false, with
   /// nothing appended, if a field is no number, or none of the layout's.
-  bool append(std::string_view row, std::vector<std::byte>& records) const;
+  bool append(std::string_view row, std::vector<std::byte>& records);
 
   /// Why append() does not take this row, and what to do.
   [[nodiscard]] std::string fault(std::string_view row) const;
@@ -53,6 +53,7 @@ class TextAttributes {
   AttributeLayout layout_;
   std::vector<Target> targets_;
   std::size_t record_size_ = 0;
+  std::vector<std::string_view> fields_;  // of the row
 };
 
 }  // namespace spillway::formats

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "formats/bytes/line_reader.h"
 
@@ -87,6 +88,16 @@ const char* read_number(const char* at, const char* end, double& value) {
   return error == std::errc() ? after : nullptr;
 }
 
+/// The quote that ends a field, of which two side by side are one of its characters; `end` if there
+/// is none.
+const char* closing_quote(const char* at, const char* end) {
+  while (true) {
+    at = std::find(at, end, '"');
+    if (at == end || at + 1 == end || at[1] != '"') return at;
+    at += 2;
+  }
+}
+
 /// Walks along the fields of a line; a field may be in double quotes.
 template <Separator S>
 class Fields {
@@ -116,7 +127,7 @@ class Fields {
   bool text(std::string_view& field) {
     if (at_ != end_ && *at_ == '"') {
       const char* const start = ++at_;
-      at_ = std::find(at_, end_, '"');
+      at_ = closing_quote(at_, end_);
       field = {start, static_cast<std::size_t>(at_ - start)};
       if (at_ != end_) ++at_;
       return end_field();
@@ -155,8 +166,22 @@ class Fields {
 };
 
 template <Separator S>
-std::vector<std::string_view> fields_of(std::string_view line, bool comments) {
-  std::vector<std::string_view> fields;
+bool ends_in_quotes_as(std::string_view line) {
+  Fields<S> walk(line);
+  while (!walk.at_end() && !is_comment(walk.rest())) {
+    const std::string_view rest = walk.rest();
+    if (rest.front() == '"' &&
+        closing_quote(rest.data() + 1, rest.data() + rest.size()) == rest.data() + rest.size()) {
+      return true;
+    }
+    std::string_view field;
+    if (!walk.text(field)) return false;
+  }
+  return false;
+}
+
+template <Separator S>
+void put_fields(std::string_view line, bool comments, std::vector<std::string_view>& fields) {
   Fields<S> walk(line);
   while (!walk.at_end() && !(comments && is_comment(walk.rest()))) {
     std::string_view field;
@@ -171,21 +196,33 @@ std::vector<std::string_view> fields_of(std::string_view line, bool comments) {
     }
     fields.push_back(field);
   }
-  return fields;
 }
 
-std::vector<std::string_view> fields_of(std::string_view line, Separator separator, bool comments) {
+void put_fields(std::string_view line, Separator separator, bool comments,
+                std::vector<std::string_view>& fields) {
+  fields.clear();
   switch (separator) {
     case Separator::kTab:
-      return fields_of<Separator::kTab>(line, comments);
+      return put_fields<Separator::kTab>(line, comments, fields);
     case Separator::kComma:
-      return fields_of<Separator::kComma>(line, comments);
+      return put_fields<Separator::kComma>(line, comments, fields);
     case Separator::kSemicolon:
-      return fields_of<Separator::kSemicolon>(line, comments);
+      return put_fields<Separator::kSemicolon>(line, comments, fields);
+    case Separator::kNone:
+      fields.push_back(line);
+      return;
     case Separator::kBlanks:
       break;
   }
-  return fields_of<Separator::kBlanks>(line, comments);
+  put_fields<Separator::kBlanks>(line, comments, fields);
+}
+
+/// The characters of a line that are there, without blanks around them.
+std::string_view characters_of(std::string_view line, const std::array<std::size_t, 2>& range) {
+  if (range[0] >= line.size()) return {};
+  line = line.substr(range[0], range[1] - range[0]);
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  return line.substr(0, line.find_last_not_of(" \t") + 1);
 }
 
 }  // namespace
@@ -198,18 +235,70 @@ std::string_view name_of(Separator separator) {
       return "commas";
     case Separator::kSemicolon:
       return "semicolons";
+    case Separator::kNone:
+      return "nothing";
     case Separator::kBlanks:
       break;
   }
   return "blanks";
 }
 
+std::string_view option_name_of(Separator separator) {
+  switch (separator) {
+    case Separator::kTab:
+      return "tab";
+    case Separator::kComma:
+      return "comma";
+    case Separator::kSemicolon:
+      return "semicolon";
+    case Separator::kNone:
+      return "none";
+    case Separator::kBlanks:
+      break;
+  }
+  return "blanks";
+}
+
+std::string without_doubled_quotes(std::string_view field) {
+  std::string text;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    text += field[i];
+    if (field[i] == '"' && i + 1 < field.size() && field[i + 1] == '"') ++i;
+  }
+  return text;
+}
+
+bool ends_in_quotes(std::string_view line, Separator separator) {
+  if (line.find('"') == line.npos) return false;
+  switch (separator) {
+    case Separator::kTab:
+      return ends_in_quotes_as<Separator::kTab>(line);
+    case Separator::kComma:
+      return ends_in_quotes_as<Separator::kComma>(line);
+    case Separator::kSemicolon:
+      return ends_in_quotes_as<Separator::kSemicolon>(line);
+    case Separator::kNone:
+    case Separator::kBlanks:
+      break;
+  }
+  return false;
+}
+
 std::vector<std::string_view> text_fields(std::string_view line, Separator separator) {
-  return fields_of(line, separator, true);
+  std::vector<std::string_view> fields;
+  put_text_fields(line, separator, fields);
+  return fields;
+}
+
+void put_text_fields(std::string_view line, Separator separator,
+                     std::vector<std::string_view>& fields) {
+  put_fields(line, separator, true, fields);
 }
 
 std::vector<std::string_view> text_names(std::string_view line, Separator separator) {
-  return fields_of(line, separator, separator == Separator::kBlanks);
+  std::vector<std::string_view> fields;
+  put_fields(line, separator, separator == Separator::kBlanks, fields);
+  return fields;
 }
 
 bool is_comment(std::string_view line) {
@@ -246,6 +335,25 @@ TextColumns::TextColumns(Separator separator, bool decimal_commas, const std::ar
   for (int axis = 0; axis < coordinates_; ++axis) axes_[column[axis]] = axis;
 }
 
+TextColumns::TextColumns(bool decimal_commas, std::vector<std::array<std::size_t, 2>> characters)
+    : separator_(Separator::kNone),
+      decimal_commas_(decimal_commas),
+      coordinates_(static_cast<int>(characters.size())),
+      count_(characters.size()),
+      exact_count_(false),
+      characters_(std::move(characters)) {}
+
+bool TextColumns::parse_characters(std::string_view line, LatticePoint& point) const {
+  point[2] = 0;
+  if (is_comment(line)) return false;
+  for (std::size_t axis = 0; axis < characters_.size(); ++axis) {
+    if (!read_decimal(characters_of(line, characters_[axis]), decimal_commas_, point[axis])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool TextColumns::parse(std::string_view line, LatticePoint& point) const {
   switch (separator_) {
     case Separator::kTab:
@@ -254,6 +362,8 @@ bool TextColumns::parse(std::string_view line, LatticePoint& point) const {
       return parse_as<Separator::kComma>(line, point);
     case Separator::kSemicolon:
       return parse_as<Separator::kSemicolon>(line, point);
+    case Separator::kNone:
+      return parse_characters(line, point);
     case Separator::kBlanks:
       break;
   }
@@ -296,7 +406,21 @@ bool TextColumns::rest_fits(std::string_view rest) const {
   });
 }
 
+std::string TextColumns::fault_of_characters(std::string_view line) const {
+  for (const auto& range : characters_) {
+    const std::string_view field = characters_of(line, range);
+    double value = 0;
+    if (read_decimal(field, decimal_commas_, value)) continue;
+    return fmt::format(
+        "characters {} to {} are not a number with decimal {}: {} in {}; correct or "
+        "remove the line",
+        range[0] + 1, range[1], decimal_commas_ ? "commas" : "points", quoted(field), quoted(line));
+  }
+  return "";
+}
+
 std::string TextColumns::fault(std::string_view line) const {
+  if (separator_ == Separator::kNone) return fault_of_characters(line);
   const std::vector<std::string_view> fields = text_fields(line, separator_);
   double value = 0;
   for (std::size_t i = 0; i < axes_.size(); ++i) {

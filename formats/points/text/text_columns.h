@@ -1,6 +1,7 @@
 #pragma once
 // The grammar of one line of a text point file, as docs/formats-points.md ("Text") describes it.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -13,17 +14,37 @@ namespace spillway::formats {
 
 /// What separates the columns of a text, in all lines the same. Blanks may stand around the other
 /// signs, too; kBlanks are any blanks and tabs.
-enum class Separator : char { kBlanks = ' ', kTab = '\t', kComma = ',', kSemicolon = ';' };
+/// kNone: nothing, as columns are characters of the line.
+enum class Separator : char {
+  kNone = 0,
+  kBlanks = ' ',
+  kTab = '\t',
+  kComma = ',',
+  kSemicolon = ';'
+};
 
 /// "commas" and so on, for messages.
 std::string_view name_of(Separator separator);
+/// "comma" and so on, as the user names it; "none".
+std::string_view option_name_of(Separator separator);
 
 /// The fields of a line, without quotes and the blanks around them. A comment at the end is left
 /// out, and so is an empty field after the last separator.
 std::vector<std::string_view> text_fields(std::string_view line, Separator separator);
 
+/// The same, in a vector that is there.
+void put_text_fields(std::string_view line, Separator separator,
+                     std::vector<std::string_view>& fields);
+
 /// The same for a line of names, in which # and the like begin no comment unless blanks separate.
 std::vector<std::string_view> text_names(std::string_view line, Separator separator);
+
+/// A field as it is meant: two quotes in it are one.
+std::string without_doubled_quotes(std::string_view field);
+
+/// Whether the line ends within a field in quotes, which goes on in the next line. Where blanks
+/// separate, none does.
+bool ends_in_quotes(std::string_view line, Separator separator);
 
 /// True for a line without data: blank, or beginning with #, // or %.
 bool is_comment(std::string_view line);
@@ -42,6 +63,9 @@ class TextColumns {
   TextColumns(Separator separator, bool decimal_commas, const std::array<int, 3>& column,
               std::size_t count, bool named);
 
+  /// Columns are these characters of a line, [first, end), of x, y and, maybe, z.
+  TextColumns(bool decimal_commas, std::vector<std::array<std::size_t, 2>> characters);
+
   /// From now on z is what its column says with the other sign: a depth.
   void turn_heights() { turned_ = true; }
 
@@ -49,6 +73,14 @@ class TextColumns {
   [[nodiscard]] int coordinates() const { return coordinates_; }
   [[nodiscard]] Separator separator() const { return separator_; }
   [[nodiscard]] bool decimal_commas() const { return decimal_commas_; }
+  [[nodiscard]] const std::vector<std::array<std::size_t, 2>>& characters() const {
+    return characters_;
+  }
+  [[nodiscard]] bool counts_downwards() const { return turned_; }
+  /// The column of an axis that there is, counted from 0. Not of characters.
+  [[nodiscard]] int column_of(int axis) const {
+    return static_cast<int>(std::ranges::find(axes_, axis) - axes_.begin());
+  }
   /// Whether that column, counted from 0, is x, y or z.
   [[nodiscard]] bool has_coordinate(std::size_t column) const {
     return column < axes_.size() && axes_[column] >= 0;
@@ -65,8 +97,11 @@ class TextColumns {
   template <Separator S>
   [[nodiscard]] bool parse_as(std::string_view line, LatticePoint& point) const;
 
+  [[nodiscard]] bool parse_characters(std::string_view line, LatticePoint& point) const;
+
   /// Whether what stands after the columns that are read may stand there.
   [[nodiscard]] bool rest_fits(std::string_view rest) const;
+  [[nodiscard]] std::string fault_of_characters(std::string_view line) const;
   [[nodiscard]] std::string fault_of_field(std::string_view field) const;
 
   Separator separator_;
@@ -76,6 +111,7 @@ class TextColumns {
   std::size_t count_;
   bool exact_count_;
   std::vector<int> axes_;  // for each column up to the last that is read: its axis, or -1
+  std::vector<std::array<std::size_t, 2>> characters_;  // if columns are these
 };
 
 }  // namespace spillway::formats

@@ -61,6 +61,7 @@ class Opening {
 
   TextOpening read() {
     skip_lines();
+    if (!said_.characters.empty()) return in_characters();
     if (!next_data_line()) return without_rows(first_columns({}));
     if (line_.find('\r') != line_.npos) {
       fail("has line ends of CR alone: convert them to LF (tr '\\r' '\\n')");
@@ -99,11 +100,47 @@ class Opening {
     return is_separator_said() ? read_names(line, Separator{said_.separator}) : read_names(line);
   }
 
+  /// Columns are characters of the lines. Lines before the first one with numbers there are a
+  /// header, of which there may be one.
+  TextOpening in_characters() {
+    const auto columns = [&](bool commas) { return TextColumns(commas, said_.characters); };
+    bool has_row = next_data_line();
+    if (has_row && !said_.no_header && !has_digits()) has_row = next_data_line();
+    if (!has_row) return without_rows(columns(said_.decimal == ','));
+    if (said_.decimal != 0) return with_row(columns(said_.decimal == ','));
+    bool commas = false;
+    look_at_lines([&](std::string_view row) {
+      LatticePoint point;
+      commas = columns(true).parse(row, point);
+      return commas != columns(false).parse(row, point);
+    });
+    return with_row(columns(commas));
+  }
+
+  /// Whether a digit stands in one of the chosen characters.
+  [[nodiscard]] bool has_digits() const {
+    return std::ranges::any_of(said_.characters, [&](const auto& range) {
+      if (range[0] >= line_.size()) return false;
+      const std::string_view field = line_.substr(range[0], range[1] - range[0]);
+      return field.find_first_of("0123456789") != field.npos;
+    });
+  }
+
+  /// Makes the line longer as long as it ends within quotes.
+  void complete_line() {
+    while (lines_.has_quotes() && ends_in_quotes(line_, likely_separator_of(line_))) {
+      if (!lines_.extend(line_)) fail("has a field in quotes that does not end; close it");
+    }
+  }
+
   /// Sets line_ to the next one that is no comment; false at the end. Of comments before it the
   /// last ones that name x and y are kept.
   bool next_data_line() {
     while (lines_.next(line_)) {
-      if (!is_comment(line_)) return true;
+      if (!is_comment(line_)) {
+        complete_line();
+        return true;
+      }
       if (said_.no_header) {
         lines_.pass_over();
         continue;
@@ -159,7 +196,7 @@ class Opening {
              resembles_number(fields[column]);
     });
     if (is_header) {
-      names_.assign(fields.begin(), fields.end());
+      take_names(fields);
       if (!next_data_line()) return without_rows(first_columns(layout));
       layout = layout_of_first_point();
     }
@@ -182,9 +219,14 @@ class Opening {
            Remedy::kColumns);
     }
     names = names_of(header);
-    names_.assign(names.names.begin(), names.names.end());
+    take_names(names.names);
     if (!next_data_line()) return without_rows(first_columns({}));
     return with_row(first_columns(layout_of_first_point()));
+  }
+
+  void take_names(const std::vector<std::string_view>& names) {
+    names_.clear();
+    for (const std::string_view name : names) names_.push_back(without_doubled_quotes(name));
   }
 
   /// Those of the chosen names; nothing unless each is there once.
@@ -280,7 +322,7 @@ class Opening {
   /// The columns that names tell, for the rows that follow.
   TextColumns named_columns(const NamesLine& names, Separator separator, bool decimal_commas) {
     const std::array<int, 3>& column = names.choice.column;
-    names_.assign(names.names.begin(), names.names.end());
+    take_names(names.names);
     TextColumns columns(separator, decimal_commas, column, names.names.size(), true);
     if (!names.choice.is_depth) return columns;
     const auto name = quoted(names.names[static_cast<std::size_t>(column[2])]);
@@ -441,13 +483,19 @@ class Opening {
   /// Calls `look` with the fields of the first rows, until it returns true; false at their end.
   template <typename Look>
   bool look_at_rows(Separator separator, Look&& look) const {
-    if (look(text_fields(line_, separator))) return true;
+    return look_at_lines([&](std::string_view row) { return look(text_fields(row, separator)); });
+  }
+
+  /// The same with these lines themselves.
+  template <typename Look>
+  bool look_at_lines(Look&& look) const {
+    if (look(line_)) return true;
     std::string_view rest = lines_.unread().substr(0, kSample);
     while (!rest.empty()) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
       std::string_view row = rest.substr(0, end);
       if (row.ends_with('\r')) row.remove_suffix(1);
-      if (look(text_fields(row, separator))) return true;
+      if (look(row)) return true;
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     return false;

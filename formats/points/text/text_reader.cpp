@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/bytes/line_reader.h"
+#include "formats/points/common/text_layout.h"
 #include "formats/points/text/text_attributes.h"
 #include "formats/points/text/text_columns.h"
 #include "formats/points/text/text_opening.h"
@@ -37,8 +38,11 @@ class TextReader : public PointReader {
       attributes_ = TextAttributes(columns_, line_, opening_.names);
     }
     begin_ = has_first_ ? lines_.line_begin() : lines_.position();
-    // Where one scan of a PTS ends and the next one's count stands only what is before tells.
-    in_pieces_ = path != "-" && !content_ && !opening_.scan_points && source_->seekable();
+    // Where one scan of a PTS ends and the next one's count stands, and whether a line begins within
+    // quotes, only what is before tells.
+    in_pieces_ = path != "-" && !content_ && !opening_.scan_points && !has_lines_in_quotes() &&
+                 source_->seekable();
+    header_.text = std::make_shared<TextFacts>(facts());
     header_.notices = std::move(opening_.notices);
     header_.name = path;
     header_.format = "text";
@@ -58,7 +62,7 @@ class TextReader : public PointReader {
     LatticePoint point;
     if (has_first_ && columns_.parse(line_, point)) append(point, block);
     has_first_ = false;
-    while (block.size() < kBlockPoints && lines_.position() < end_ && lines_.next(line_)) {
+    while (block.size() < kBlockPoints && lines_.position() < end_ && next_line()) {
       // Comments are rare: they are looked for only where there is no point.
       if (columns_.parse(line_, point)) {
         append(point, block);
@@ -85,6 +89,77 @@ class TextReader : public PointReader {
   }
 
  private:
+  bool next_line() {
+    if (!lines_.next(line_)) return false;
+    if (lines_.has_quotes()) complete_line();
+    return true;
+  }
+
+  /// Makes the line longer as long as it ends within quotes.
+  void complete_line() {
+    while (ends_in_quotes(line_, columns_.separator())) {
+      if (!lines_.numbered()) {
+        fail(
+            fmt::format("{} has a field in quotes that goes on in the next line, which none of the "
+                        "first lines has: put the file through a pipe, as cat FILE | spillway "
+                        "COMMAND -, so that it is read from front to back",
+                        lines_.line_name()),
+            lines_.place());
+      }
+      if (!lines_.extend(line_)) {
+        fail(fmt::format("{} has a field in quotes that does not end; close it, or get a complete "
+                         "copy: {}",
+                         lines_.line_name(), quoted(line_)),
+             lines_.place());
+      }
+    }
+  }
+
+  /// Calls `look` with whole lines after the first row, as far as they have been read, until it
+  /// returns true; false at their end.
+  template <typename Look>
+  bool look_at_lines(Look&& look) const {
+    std::string_view rest = lines_.unread();
+    for (std::size_t end = rest.find('\n'); end != rest.npos; end = rest.find('\n')) {
+      std::string_view line = rest.substr(0, end);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      if (look(line)) return true;
+      rest.remove_prefix(end + 1);
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool has_lines_in_quotes() const {
+    if (!lines_.has_quotes()) return false;
+    return line_.find('\n') != line_.npos || look_at_lines([&](std::string_view line) {
+             return ends_in_quotes(line, columns_.separator());
+           });
+  }
+
+  [[nodiscard]] TextFacts facts() const {
+    TextFacts facts;
+    facts.separator = option_name_of(columns_.separator());
+    facts.decimal = columns_.decimal_commas() ? ',' : '.';
+    facts.names = opening_.names;
+    facts.characters = columns_.characters();
+    facts.counts_downwards = columns_.counts_downwards();
+    if (facts.characters.empty()) {
+      for (int axis = 0; axis < columns_.coordinates(); ++axis) {
+        facts.columns.push_back(columns_.column_of(axis));
+      }
+    }
+    if (!has_first_) return facts;
+    constexpr std::size_t kShown = 3;
+    constexpr std::size_t kShownBytes = 500;
+    facts.first_line = lines_.number();
+    facts.first_rows.emplace_back(line_.substr(0, kShownBytes));
+    look_at_lines([&](std::string_view line) {
+      if (!is_comment(line)) facts.first_rows.emplace_back(line.substr(0, kShownBytes));
+      return facts.first_rows.size() == kShown;
+    });
+    return facts;
+  }
+
   void go_to_piece(std::uint64_t piece) override {
     const std::uint64_t from = begin_ + piece * piece_bytes_;
     lines_.seek(from);

@@ -26,12 +26,15 @@ bool OpenedPoints::identify(RunIdentity& identity) const {
     identity.add_file(fmt::format("input {}", i + 1), input_->paths()[i]);
   }
   add("format of points", options_.format);
-  add("columns", fmt::join(options_.columns, " "));
-  add("names of columns", fmt::join(options_.column_names, ","));
-  add("lines left out", options_.skip_lines);
-  add("separator", static_cast<int>(options_.separator));
-  add("decimal sign", static_cast<int>(options_.decimal));
-  add("no header", options_.no_header);
+  add("columns", fmt::join(options_.text.columns, " "));
+  add("names of columns", fmt::join(options_.text.column_names, ","));
+  for (const auto& [first, last] : options_.text.characters) {
+    add("characters", fmt::format("{}-{}", first, last));
+  }
+  add("lines left out", options_.text.skip_lines);
+  add("separator", static_cast<int>(options_.text.separator));
+  add("decimal sign", static_cast<int>(options_.text.decimal));
+  add("no header", options_.text.no_header);
   add("skip_invalid", options_.skip_invalid);
   add("keep_withheld", options_.keep_withheld);
   add("every", options_.every);

@@ -141,32 +141,52 @@ std::optional<std::array<int, 3>> columns_of(const std::vector<int>& chosen) {
   return columns;
 }
 
+/// Characters counted from 0, [first, end).
+std::vector<std::array<std::size_t, 2>> characters_of(
+    const std::vector<std::array<int, 2>>& chosen) {
+  std::vector<std::array<std::size_t, 2>> characters;
+  for (const auto& [first, last] : chosen) {
+    if (first < 1 || last < first || last > kMostColumns) {
+      throw InvalidArgument(
+          fmt::format("there are no characters {} to {}: they are counted from 1 to {}", first,
+                      last, kMostColumns));
+    }
+    characters.push_back({static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last)});
+  }
+  return characters;
+}
+
 /// Throws InvalidArgument for what no text can be like.
-TextLayout text_layout_of(const PointOptions& options) {
+TextLayout text_layout_of(const TextTable& table) {
   const auto check = [](const char* name, char sign, std::string_view signs) {
     if (sign == 0 || signs.find(sign) != signs.npos) return;
     throw InvalidArgument(fmt::format("\"{}\" is no {} of text", sign, name));
   };
-  check("separator", options.separator, ",;\t ");
-  check("decimal sign", options.decimal, ".,");
-  if (options.separator == ',' && options.decimal == ',') {
+  check("separator", table.separator, ",;\t ");
+  check("decimal sign", table.decimal, ".,");
+  if (table.separator == ',' && table.decimal == ',') {
     throw InvalidArgument("commas separate columns, or are decimal signs, not both");
   }
-  const std::vector<std::string>& names = options.column_names;
-  if (!names.empty()) {
-    if (names.size() != 2 && names.size() != 3) {
-      throw InvalidArgument(fmt::format("2 or 3 columns are x, y and z, not {}", names.size()));
-    }
-    if (!options.columns.empty() || options.no_header) {
-      throw InvalidArgument("columns are chosen by their names, by numbers, or there are none");
-    }
+  for (const std::size_t count : {table.column_names.size(), table.characters.size()}) {
+    if (count == 0 || count == 2 || count == 3) continue;
+    throw InvalidArgument(fmt::format("2 or 3 columns are x, y and z, not {}", count));
   }
-  return {.columns = columns_of(options.columns),
-          .names = names,
-          .skip_lines = options.skip_lines,
-          .separator = options.separator,
-          .decimal = options.decimal,
-          .no_header = options.no_header};
+  const int ways = (table.columns.empty() ? 0 : 1) + (table.column_names.empty() ? 0 : 1) +
+                   (table.characters.empty() ? 0 : 1);
+  if (ways > 1 || (table.no_header && !table.column_names.empty())) {
+    throw InvalidArgument(
+        "columns are chosen by their names, by numbers or by characters, or there are no names");
+  }
+  if (table.separator != 0 && !table.characters.empty()) {
+    throw InvalidArgument("nothing separates columns that are chosen by their characters");
+  }
+  return {.columns = columns_of(table.columns),
+          .names = table.column_names,
+          .characters = characters_of(table.characters),
+          .skip_lines = table.skip_lines,
+          .separator = table.separator,
+          .decimal = table.decimal,
+          .no_header = table.no_header};
 }
 
 /// Throws unless there is an input of which can be said how its text is to be read.
@@ -239,7 +259,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.dimension = options.dimension;
   how.index = true;
   how.reader.format = options.format;
-  how.reader.text = text_layout_of(options);
+  how.reader.text = text_layout_of(options.text);
   how.reader.skip_invalid = options.skip_invalid;
   how.reader.salvage = options.salvage;
   how.skip_broken = options.skip_broken;
@@ -286,7 +306,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
 }
 
 void OpenedPoints::check_input(const PointOptions& options, const Context& context) const {
-  if (!text_layout_of(options).is_none()) check_is_text(input_->headers());
+  if (!text_layout_of(options.text).is_none()) check_is_text(input_->headers());
   if (options.resolution > 0) check_levels(input_->headers(), context.options());
   const bool by_height = options.thin && (options.thin->choice == spillway::ThinChoice::kLowest ||
                                           options.thin->choice == spillway::ThinChoice::kHighest);

@@ -28,7 +28,13 @@ AttributeStatistics::AttributeStatistics(const AttributeLayout& layout)
     : layout_(layout),
       ranges_(layout.fields().size(), {kInfinity, -kInfinity}),
       classes_(counts_of("classification")),
-      returns_(counts_of("return_number")) {}
+      returns_(counts_of("return_number")) {
+  for (const char* const name :
+       {"synthetic", "key_point", "withheld", "overlap", "edge_of_flight_line"}) {
+    flags_.push_back(counts_of(name));
+    if (flags_.back().field == nullptr) flags_.pop_back();
+  }
+}
 
 AttributeStatistics::Counts AttributeStatistics::counts_of(const char* name) const {
   const AttributeField* const field = layout_.find(name);
@@ -59,6 +65,13 @@ void AttributeStatistics::add(std::span<const std::byte> records) {
   }
   count(records, classes_);
   count(records, returns_);
+  for (Counts& flag : flags_) count(records, flag);
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> AttributeStatistics::flags() const {
+  std::vector<std::pair<std::string, std::uint64_t>> flags;
+  for (const Counts& flag : flags_) flags.emplace_back(flag.field->attribute.name, flag.counts[1]);
+  return flags;
 }
 
 std::vector<std::array<double, 2>> AttributeStatistics::ranges() const {

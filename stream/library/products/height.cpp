@@ -246,12 +246,7 @@ PointConversion copy_points(const std::vector<std::string>& paths, const PointOp
   PointOptions all;
   all.dimension = 0;
   all.format = options.format;
-  all.columns = options.columns;
-  all.column_names = options.column_names;
-  all.skip_lines = options.skip_lines;
-  all.separator = options.separator;
-  all.decimal = options.decimal;
-  all.no_header = options.no_header;
+  all.text = options.text;
   all.skip_invalid = options.skip_invalid;
   all.keep_withheld = true;
   all.crs = options.crs;
@@ -358,11 +353,7 @@ HeightReport measure_heights(const std::vector<std::string>& paths, const PointO
     files = {copy.emplace(context, "input").get()};
     skipped = stream::copy_points(paths, points, files[0], context).skipped_files;
     wanted.format = "spp";
-    wanted.columns.clear();
-    wanted.column_names.clear();
-    wanted.skip_lines = 0;
-    wanted.separator = wanted.decimal = 0;
-    wanted.no_header = false;
+    wanted.text = {};
     wanted.skip_invalid = wanted.salvage = wanted.skip_broken = false;
   }
   const auto source = open_points(files, wanted, context);

@@ -95,6 +95,21 @@ std::unique_ptr<OpenedPoints> open_one(const std::string& path, const PointOptio
   return std::make_unique<OpenedPoints>(std::vector{path}, options, context);
 }
 
+TableInfo table_info(const TextFacts& text) {
+  TableInfo table;
+  table.separator = text.separator;
+  table.decimal = text.decimal;
+  table.names = text.names;
+  for (const int column : text.columns) table.columns.push_back(column + 1);
+  for (const auto& [first, end] : text.characters) {
+    table.characters.push_back({static_cast<int>(first) + 1, static_cast<int>(end)});
+  }
+  table.counts_downwards = text.counts_downwards;
+  table.first_line = text.first_line;
+  table.first_rows = text.first_rows;
+  return table;
+}
+
 PointsInfo told_by(const PointHeader& header) {
   PointsInfo info;
   info.format = header.format;
@@ -111,6 +126,7 @@ PointsInfo told_by(const PointHeader& header) {
   }
   if (const auto told = extent_told_by(header)) info.header_box = extent_of(*told);
   info.attributes = header.attributes.attributes();
+  if (header.text) info.table = table_info(*header.text);
   return info;
 }
 
@@ -212,6 +228,7 @@ PointsInfo describe_points(const std::string& path, const PointOptions& options,
   info.ranges = attributes.ranges();
   info.classes = attributes.classes();
   info.returns = attributes.returns();
+  info.flags = attributes.flags();
   return info;
 }
 

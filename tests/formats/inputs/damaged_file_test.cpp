@@ -108,6 +108,13 @@ std::vector<Damage> damaged_points() {
       {"text", "a.txt", [] { return std::string("1 2 3\n4 5 6\n7 8 nine\n"); }, always(at_line(3))},
       {"npy", "a.npy", [] { return without_end(points_as("a.npy")); }, end_of_file},
       {"ply", "a.ply", [] { return without_end(points_as("a.ply")); }, end_of_file},
+      {"pcd", "a.pcd",
+       [] {
+         return std::string(
+             "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 "
+             "6\"\n");
+       },
+       always(at_line(8))},
       {"spp", "a.spp", [] { return without_end(points_as("a.spp")); }, end_of_file},
   };
 }
@@ -125,6 +132,7 @@ INSTANTIATE_TEST_SUITE_P(EveryFormat, DamagedPoints, ValuesIn(damaged_points()),
 
 TEST(DamagedPointFormats, AreAllThatThereAre) {
   for (const PointFormat* const format : point_formats()) {
+    if (format->name == "raster") continue;  // which GDAL reads, from the disk
     EXPECT_THAT(damaged_points(), Contains(Field(&Damage::format, format->name)));
   }
 }

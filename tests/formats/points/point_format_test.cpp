@@ -107,7 +107,7 @@ TEST(PointFormatChoice, UnknownContent) {
 
 TEST(PointFormatChoice, UnknownOption) {
   EXPECT_THAT(error_of_content("a.las", "", {"shp", false}),
-              HasSubstr("choose las, laz, copc, text, npy, ply or spp"));
+              HasSubstr("choose las, laz, copc, text, npy, ply, pcd, spp or raster"));
 }
 
 TEST(PointFormatChoice, OutputWithoutKnownFormat) {

@@ -52,7 +52,7 @@ TEST(PointFormatTable, OneFormatIsText) {
 TEST(PointFormatTable, ListsForMessagesAreInItsOrder) {
   EXPECT_EQ(list_of_points(is_written, "or"), "LAS, LAZ, COPC, text, npy, PLY or spp");
   EXPECT_THAT(point_extensions(), ElementsAre(".las", ".laz", ".copc.laz", ".txt", ".xyz", ".csv",
-                                              ".asc", ".npy", ".ply", ".spp"));
+                                              ".asc", ".npy", ".ply", ".pcd", ".spp"));
 }
 
 // A format as its folder would have it: "TOY" and coordinates.

@@ -387,8 +387,8 @@ TEST_F(Streams, ReadFilesWithFilters) {
   const Thin no_choice{4, static_cast<ThinChoice>(9)};
   for (const PointOptions& wrong :
        {PointOptions{.classes = {300}}, PointOptions{.resolution = nan},
-        PointOptions{.resolution = -1}, PointOptions{.columns = {1}},
-        PointOptions{.columns = {0, 1}}, PointOptions{.columns = {2, 2}},
+        PointOptions{.resolution = -1}, PointOptions{.text = {.columns = {1}}},
+        PointOptions{.text = {.columns = {0, 1}}}, PointOptions{.text = {.columns = {2, 2}}},
         PointOptions{.thin = no_choice}}) {
     EXPECT_EQ(code_of([&] { open_points({folder_}, wrong, context); }),
               ErrorCode::kInvalidArgument);

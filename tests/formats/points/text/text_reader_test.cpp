@@ -189,5 +189,93 @@ TEST(TextCorruption, LongLinesAreShortenedInMessages) {
 
 TEST(TextCorruption, UnreadableTail) { EXPECT_THAT(text_error("1 2 3\n4 5"), HasSubstr("line 2")); }
 
+TEST(TextReader, FieldsInQuotesMayHaveLineEndsAndDoubledQuotes) {
+  const std::string rows =
+      "id,\"x\n(m)\",y,z,\"the \"\"word\"\"\"\r\n"
+      "1,1.5,-2,3e2,\"two\nlines, and \"\"quotes\"\"\"\n"
+      "\"a\r\n1,2,3,4,5\r\n\",4,5,6,\"\"\n";
+  for (const bool pipe : {false, true}) {
+    FaultyFileSystem files;
+    files.seekable = !pipe;
+    files.files["-"] = rows;
+    const AllPoints all = read_all_points(files, "-");
+    EXPECT_THAT(all.points, ElementsAre(kFirst, kSecond));
+    EXPECT_THAT(all.header.text->names, ElementsAre("id", "x\n(m)", "y", "z", "the \"word\""));
+  }
+}
+
+TEST(TextReader, LinesAfterAFieldOfSeveralLinesKeepTheirNumbers) {
+  EXPECT_THAT(error_of([] { points_of("x,y,z,t\n1,2,3,\"a\nb\nc\"\n4,5,6,d\n7,8,nine,e\n"); }),
+              HasSubstr("line 6"));
+}
+
+TEST(TextReader, AFieldInQuotesThatDoesNotEndIsAnError) {
+  EXPECT_THAT(error_of([] { points_of("x,y,z,t\n1,2,3,a\n4,5,6,\"b\n7,8,9,c\n"); }),
+              AllOf(HasSubstr("line 3"), HasSubstr("does not end")));
+  EXPECT_THAT(error_of([] { points_of("1,2,3,\"b\n7,8,9,c\n"); }), HasSubstr("does not end"));
+  EXPECT_THAT(points_of("1.5 -2 3e2 5\" pipe\n4 5 6 \"a\n"), ElementsAre(kFirst, kSecond))
+      << "where blanks separate, quotes do not go on";
+  EXPECT_THAT(points_of("1.5,-2,3e2,5\" pipe\n4,5,6,7\"\n"), ElementsAre(kFirst, kSecond))
+      << "within a field they mean nothing";
+}
+
+/// Lines in quotes that only come where pieces are read in any order cannot be told from rows.
+TEST(TextReader, LateLinesInQuotesAreAnErrorInAFileAndReadFromAPipe) {
+  std::string rows = "x,y,z,t\n";
+  while (rows.size() < (std::size_t{2} << 20)) rows += "1,2,3,\"a\"\n";
+  rows += "4,5,6,\"b\n7,8,9,c\"\n";
+  FaultyFileSystem files;
+  files.files["a.csv"] = rows;
+  const auto reader = open_point_reader(files, "a.csv", {});
+  ASSERT_TRUE(reader->pieces());
+  EXPECT_THAT(error_of([&] {
+                PointBlock block;
+                for (std::uint64_t piece = 0; piece < *reader->pieces(); ++piece) {
+                  reader->begin_piece(piece);
+                  while (reader->read(block)) continue;
+                }
+              }),
+              AllOf(HasSubstr("in quotes that goes on in the next line"), HasSubstr("a pipe")));
+  EXPECT_EQ(read_all_points(files, "a.csv").points.back(), kSecond);
+  files.files["a.csv"] = "x,y,z,t\n4,5,6,\"b\n7,8,9,c\"\n" + rows.substr(8);
+  EXPECT_FALSE(open_point_reader(files, "a.csv", {})->pieces()) << "early ones are seen";
+}
+
+TEST(TextReader, ColumnsOfFixedWidth) {
+  const auto read = [](const std::string& text, TextLayout layout) {
+    layout.characters = {{3, 9}, {9, 15}, {15, 20}};
+    return read_content("a.txt", text, {.text = layout});
+  };
+  const std::string rows = "001   1.5    -2  3e2TREE\n002123456 54321    7\n";
+  const LatticePoint second{123456, 54321, 7};
+  EXPECT_THAT(read(rows, {}).points, ElementsAre(kFirst, second));
+  EXPECT_THAT(read("Nr.  East North    H\n# a\n" + rows, {}).points, ElementsAre(kFirst, second));
+  EXPECT_THAT(read("001     1    -2  300\n002   4,5     5    6\n", {}).points,
+              ElementsAre(LatticePoint{1, -2, 300}, LatticePoint{4.5, 5, 6}));
+  EXPECT_THAT(error_of([&] { read(rows + "003     1     2    \n", {}); }),
+              AllOf(HasSubstr("line 3"), HasSubstr("characters 16 to 20 are not a number")));
+  EXPECT_THAT(error_of([&] { read(rows + "003     1\n", {}); }), HasSubstr("line 3"));
+  EXPECT_THAT(error_of([&] { read("Nr.  East North    H\n" + rows, {.no_header = true}); }),
+              HasSubstr("line 1"));
+  EXPECT_EQ(read("001\n" + rows, {.skip_lines = 1}).points.size(), 2U);
+  const AllPoints all = read(rows, {});
+  EXPECT_EQ(all.header.text->separator, "none");
+  EXPECT_EQ(all.header.text->characters[1], (std::array<std::size_t, 2>{9, 15}));
+}
+
+TEST(TextReader, TellsHowTheTextWasUnderstood) {
+  const AllPoints all =
+      read_content("a.csv", "# survey\nid;Hoch;Rechts;Tiefe\n1;2,5;1,5;3\n\n2;5;4;6\n# end\n");
+  ASSERT_TRUE(all.header.text);
+  const TextFacts& text = *all.header.text;
+  EXPECT_EQ(text.separator, "semicolon");
+  EXPECT_EQ(text.decimal, ',');
+  EXPECT_THAT(text.names, ElementsAre("id", "Hoch", "Rechts", "Tiefe"));
+  EXPECT_THAT(text.columns, ElementsAre(2, 1, 3));
+  EXPECT_TRUE(text.counts_downwards);
+  EXPECT_EQ(text.first_line, 3U);
+  EXPECT_THAT(text.first_rows, ElementsAre("1;2,5;1,5;3", "2;5;4;6"));
+}
+
 }  // namespace
 }  // namespace spillway::test
