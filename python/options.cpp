@@ -74,18 +74,33 @@ auto table_setter(T TextTable::*member) {
   return [member](PointOptions& options, T value) { options.text.*member = std::move(value); };
 }
 
+/// Likewise of what is clipped.
+template <typename Options, typename T>
+auto clip_getter(T Clip::*member) {
+  return [member](const Options& options) { return options.clip.*member; };
+}
+template <typename Options, typename T>
+auto clip_setter(T Clip::*member) {
+  return [member](Options& options, T value) { options.clip.*member = std::move(value); };
+}
+
 void bind_point_options(py::module_& module) {
   py::class_<PointOptions>(module, "PointOptions")
       .def(py::init())
       .def_readwrite("dimension", &PointOptions::dimension)
       .def_readwrite("format", &PointOptions::format)
       .def_property("columns", table_getter(&TextTable::columns), table_setter(&TextTable::columns))
-      .def_property("column_names", table_getter(&TextTable::column_names), table_setter(&TextTable::column_names))
-      .def_property("characters", table_getter(&TextTable::characters), table_setter(&TextTable::characters))
-      .def_property("skip_lines", table_getter(&TextTable::skip_lines), table_setter(&TextTable::skip_lines))
-      .def_property("separator", table_getter(&TextTable::separator), table_setter(&TextTable::separator))
+      .def_property("column_names", table_getter(&TextTable::column_names),
+                    table_setter(&TextTable::column_names))
+      .def_property("characters", table_getter(&TextTable::characters),
+                    table_setter(&TextTable::characters))
+      .def_property("skip_lines", table_getter(&TextTable::skip_lines),
+                    table_setter(&TextTable::skip_lines))
+      .def_property("separator", table_getter(&TextTable::separator),
+                    table_setter(&TextTable::separator))
       .def_property("decimal", table_getter(&TextTable::decimal), table_setter(&TextTable::decimal))
-      .def_property("no_header", table_getter(&TextTable::no_header), table_setter(&TextTable::no_header))
+      .def_property("no_header", table_getter(&TextTable::no_header),
+                    table_setter(&TextTable::no_header))
       .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
       .def_readwrite("salvage", &PointOptions::salvage)
       .def_readwrite("skip_broken", &PointOptions::skip_broken)
@@ -97,9 +112,12 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("resolution", &PointOptions::resolution)
       .def_readwrite("crs", &PointOptions::crs)
       .def_readwrite("foreign_crs", &PointOptions::foreign_crs)
-      .def_readwrite("clip", &PointOptions::clip)
-      .def_readwrite("clip_buffer", &PointOptions::clip_buffer)
-      .def_readwrite("clip_outside", &PointOptions::clip_outside)
+      .def_property("clip", clip_getter<PointOptions>(&Clip::polygons),
+                    clip_setter<PointOptions>(&Clip::polygons))
+      .def_property("clip_buffer", clip_getter<PointOptions>(&Clip::buffer),
+                    clip_setter<PointOptions>(&Clip::buffer))
+      .def_property("clip_outside", clip_getter<PointOptions>(&Clip::outside),
+                    clip_setter<PointOptions>(&Clip::outside))
       .def_readwrite("z_range", &PointOptions::z_range)
       .def_readwrite("to_crs", &PointOptions::to_crs)
       .def_readwrite("z_multiplier", &PointOptions::z_multiplier)
@@ -125,6 +143,12 @@ void bind_point_options(py::module_& module) {
       .def_readwrite("attributes", &MeshFileOptions::attributes)
       .def_readwrite("tile_side", &MeshFileOptions::tile_side)
       .def_readwrite("tile_polygons", &MeshFileOptions::tile_polygons)
+      .def_property("clip", clip_getter<MeshFileOptions>(&Clip::polygons),
+                    clip_setter<MeshFileOptions>(&Clip::polygons))
+      .def_property("clip_buffer", clip_getter<MeshFileOptions>(&Clip::buffer),
+                    clip_setter<MeshFileOptions>(&Clip::buffer))
+      .def_property("clip_outside", clip_getter<MeshFileOptions>(&Clip::outside),
+                    clip_setter<MeshFileOptions>(&Clip::outside))
       .def_readwrite("foreign_crs", &MeshFileOptions::foreign_crs);
 
   py::class_<MeshOptions>(module, "MeshOptions")
@@ -221,6 +245,12 @@ void bind_product_options(py::module_& module) {
       .def_readwrite("like", &DemOptions::like)
       .def_readwrite("tile_side", &DemOptions::tile_side)
       .def_readwrite("tile_polygons", &DemOptions::tile_polygons)
+      .def_property("clip", clip_getter<DemOptions>(&Clip::polygons),
+                    clip_setter<DemOptions>(&Clip::polygons))
+      .def_property("clip_buffer", clip_getter<DemOptions>(&Clip::buffer),
+                    clip_setter<DemOptions>(&Clip::buffer))
+      .def_property("clip_outside", clip_getter<DemOptions>(&Clip::outside),
+                    clip_setter<DemOptions>(&Clip::outside))
       .def_readwrite("vrt", &DemOptions::vrt)
       .def_readwrite("foreign_crs", &DemOptions::foreign_crs)
       .def_readwrite("compute_edges", &DemOptions::compute_edges)

@@ -2,6 +2,7 @@
 // Rasters of a triangulated terrain.
 
 #include <spillway/choices.h>
+#include <spillway/clip.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
@@ -65,6 +66,7 @@ struct DemOptions {
   /// Of products that compare heights with distances: what heights are multiplied by, to have the
   /// unit of x and y. Nothing: by what the coordinate system tells of its units.
   std::optional<double> z_factor{};
+  Clip clip{};  ///< pixels whose centres lie elsewhere get no data; not with `tile_polygons`
   std::optional<double> max_edge{};      ///< of a mesh, leave out triangles with a longer edge
   float nodata = -9999;                  ///< of float32; of bytes it is 0
   PixelType type = PixelType::kFloat32;  ///< bytes are for shades

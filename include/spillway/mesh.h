@@ -2,6 +2,7 @@
 // A mesh that streams out, block by block: to files, into memory, to whatever a program derives.
 
 #include <spillway/attribute_columns.h>
+#include <spillway/clip.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
@@ -124,6 +125,9 @@ struct MeshFileOptions {
   /// its fields in braces, as "{name}", stand for their values. Its coordinate system must be that
   /// of the mesh, unless `foreign_crs`.
   std::string tile_polygons{};
+  /// Simplices whose centroid lies elsewhere in x and y are left out, and so are their vertices;
+  /// those that stay are whole. Memory as for tiles; not with these, and not over ranks.
+  Clip clip{};
   bool foreign_crs = false;
 };
 

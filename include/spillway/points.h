@@ -3,6 +3,7 @@
 
 #include <spillway/attribute_columns.h>
 #include <spillway/choices.h>
+#include <spillway/clip.h>
 #include <spillway/context.h>
 #include <spillway/export.h>
 #include <spillway/extent.h>
@@ -120,14 +121,7 @@ struct PointOptions {
   std::string where{};
   std::optional<Extent> bounds{};  ///< use points in this closed box; sides may be infinite
   std::optional<std::array<double, 2>> z_range{};  ///< use points of heights from low to high
-  /// Use points that lie in the polygons of this vector file, of any format that GDAL reads; empty:
-  /// all. What lies on an edge belongs to what is east of it, or north of a level one. Its
-  /// coordinate system must be that of the points, unless `foreign_crs`.
-  std::string clip{};
-  /// Use points that are no farther than this from what the file has, which may be lines and points,
-  /// too; below 0: those that are so far inside of its polygons.
-  double clip_buffer = 0;
-  bool clip_outside = false;  ///< use the other points instead
+  Clip clip{};                                     ///< use points that lie there
   std::optional<Thin> thin{};
   /// Of COPC files, read the levels that are needed for points so far apart; 0: all.
   double resolution = 0;

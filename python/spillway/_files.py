@@ -34,6 +34,7 @@ from ._options import (
     make_run,
     mesh_file_options,
     mesh_options,
+    move_clip,
     names_for,
     point_options,
     put,
@@ -58,6 +59,7 @@ def triangulate(
     attributes: str | Sequence[str] | None = None,
     output_format: str | None = None,
     tiles: float | PathLike | None = None,
+    clip_simplices: bool = False,
     **options: Unpack[TriangulateOptions],
 ) -> RunReport:
     """Triangulate points of any number, through bounded memory, to a file.
@@ -89,6 +91,8 @@ def triangulate(
         A file for each square of this side, with ``{x}`` and ``{y}`` in `output`, or for each
         polygon of this vector file, with its fields in braces. A simplex goes whole to where its
         centroid lies.
+    clip_simplices : bool, optional
+        Use all points, and let `clip` leave out simplices whose centroids lie elsewhere.
     {options}
 
     Returns
@@ -113,9 +117,11 @@ def triangulate(
     """
     source = as_inputs(inputs)
     carried = attributes_of(inputs, "inputs")
-    origin = points_origin(source, as_dimension(dim, source), options, id, carried)
     path = as_path(output, "output")
     how = mesh_file_options(output_format, attributes, tiles, options)
+    if clip_simplices:
+        options = move_clip(how, options)  # type: ignore[assignment]
+    origin = points_origin(source, as_dimension(dim, source), options, id, carried)
     return warn_of_tiles(RunReport(**_spillway.mesh(make_run(options), origin, path, how)))
 
 
@@ -195,9 +201,11 @@ def convert(
     }
     run = make_run(options)
     if is_mesh(run, source, mesh_format, options):
+        written = mesh_file_options(output_format, attributes, tiles, options)
+        if options.get("clip") is not None:
+            options = move_clip(written, options)  # type: ignore[assignment]
         check_mesh_options(options)
         refuse({**of_points, **cells}, [*of_points, *cells], "on a mesh")
-        written = mesh_file_options(output_format, attributes, tiles, options)
         assert isinstance(source, list)
         origin = _spillway.MeshOrigin(source[0], mesh_options(options, mesh_format))
         return warn_of_tiles(RunReport(**_spillway.mesh(run, origin, path, written)))

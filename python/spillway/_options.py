@@ -260,12 +260,12 @@ _OPTIONS = {
     "input_format": _Option(
         "str, optional",
         'Format of the points, where neither first bytes nor name tell: ``"las"``, ``"laz"``, '
-        '``"copc"``, ``"text"``, ``"npy"``, ``"ply"`` or ``"spp"``.',
+        '``"copc"``, ``"text"``, ``"npy"``, ``"ply"``, ``"pcd"``, ``"spp"`` or ``"raster"``.',
         "points",
         attribute("format"),
     ),
     "columns": _Option(
-        "sequence of int, of str, or of pairs of int, optional",
+        "sequence of int, of str or of pairs of int, optional",
         "Of text, the columns of x, y and z, counted from 1, or their names, or the first and the "
         "last character of each in a line, counted from 1.",
         "points",
@@ -670,6 +670,21 @@ def put_tiles(
         if not tiles > 0:
             raise InvalidArgumentError(f"tiles is {tiles}; give a side above 0, or a file")
         put(target, "tiles", tiles, lambda made, side: setattr(made, "tile_side", side))
+
+
+_CLIP = ("clip", "clip_buffer", "clip_outside")
+
+
+def move_clip(
+    target: _spillway.DemOptions | _spillway.MeshFileOptions, options: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Put what is to be clipped by, which is not points; returns the other options."""
+    if options.get("clip") is None:
+        raise InvalidArgumentError("clip, the file of polygons, is missing")
+    target.clip = as_path(options["clip"], "clip")
+    put_all(target, {name: options.get(name) for name in _CLIP[1:]})
+    target.foreign_crs = bool(options.get("force_crs"))
+    return {name: value for name, value in options.items() if name not in _CLIP}
 
 
 def mesh_file_options(

@@ -16,6 +16,7 @@ from ._options import (
     TriangulateOptions,
     as_path,
     make_run,
+    move_clip,
     point_options,
     put,
     put_all,
@@ -67,6 +68,7 @@ def dem(
     gradient: str | None = None,
     compute_edges: bool = False,
     fill_voids: bool = False,
+    clip_pixels: bool = False,
     mesh_format: str | None = None,
     **options: Unpack[DemOptions],
 ) -> Raster:
@@ -91,6 +93,7 @@ def dem(
     gradient: str | None = None,
     compute_edges: bool = False,
     fill_voids: bool = False,
+    clip_pixels: bool = False,
     tiles: float | PathLike | None = None,
     vrt: PathLike | None = None,
     nodata: float | None = None,
@@ -121,6 +124,7 @@ def dem(
     gradient: str | None = None,
     compute_edges: bool = False,
     fill_voids: bool = False,
+    clip_pixels: bool = False,
     tiles: float | PathLike | None = None,
     vrt: PathLike | None = None,
     nodata: float | None = None,
@@ -172,6 +176,8 @@ def dem(
     fill_voids : bool, optional
         Give min, max, mean and percentiles of pixels without points the height of the triangle at
         the centre, where there is one (`max_edge`).
+    clip_pixels : bool, optional
+        Use all points, and let `clip` leave pixels without data whose centres lie elsewhere.
     tiles : float or path, optional
         Cut the raster into files: squares of this side, with ``{x}`` and ``{y}`` in their names, or
         by the polygons of this vector file, with fields of theirs in braces.
@@ -234,6 +240,8 @@ def dem(
         how.foreign_crs = bool(options.get("force_crs"))
     put_all(how, surface)
     put_all(how, {"max_edge": options.get("max_edge")})
+    if clip_pixels:
+        options = move_clip(how, options)  # type: ignore[assignment]
     of_files = {"nodata": nodata, "type": type, "compress": compress, "cog": cog}
     run = make_run(options)
     if is_canopy:

@@ -96,6 +96,9 @@ class MeshFileOptions:
     attributes: list[str] | None
     tile_side: float
     tile_polygons: bytes
+    clip: bytes
+    clip_buffer: float
+    clip_outside: bool
     foreign_crs: bool
 
 class MeshOptions:
@@ -148,6 +151,9 @@ class DemOptions:
     type: str
     compress: str
     cog: bool
+    clip: bytes
+    clip_buffer: float
+    clip_outside: bool
 
 class VolumeOptions:
     max_edge: float | None

@@ -24,17 +24,17 @@ std::uint64_t control_group_limit(const char* path) {
   return file >> bytes ? bytes : ~std::uint64_t{0};
 }
 
-std::uint64_t available_memory() {
+}  // namespace
+
+std::uint64_t machine_memory() {
   const auto machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                        static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
   return std::min({machine, control_group_limit("/sys/fs/cgroup/memory.max"),
                    control_group_limit("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
 }
 
-}  // namespace
-
 std::uint64_t default_memory_limit(unsigned processes) {
-  return std::min(kLargestDefault, available_memory() / 4 / processes);
+  return std::min(kLargestDefault, machine_memory() / 4 / processes);
 }
 
 std::uint64_t parse_memory_size(const std::string& text) {

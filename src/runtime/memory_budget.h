@@ -16,6 +16,9 @@
 
 namespace spillway::runtime {
 
+/// Bytes of memory that this machine has, or that its control group may use.
+std::uint64_t machine_memory();
+
 /// The smaller of 2 GiB and a quarter of the memory that this process may use: the machine's, or
 /// its container's where that has less; of that an equal share if `processes` processes share it.
 std::uint64_t default_memory_limit(unsigned processes = 1);

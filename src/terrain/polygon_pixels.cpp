@@ -74,6 +74,40 @@ PolygonPixels::PolygonPixels(std::span<const std::vector<Point<2>>> rings,
     rows.push_back(row);
     runs_.push_back({begin, end});
   }
+  complete(rows);
+}
+
+PolygonPixels::PolygonPixels(std::span<const PolygonPixels> several, bool outside,
+                             const PixelGrid& raster) {
+  std::vector<std::uint32_t> rows;
+  std::vector<ColumnRun> inside;
+  for (std::uint32_t row = 0; row < raster.rows; ++row) {
+    inside.clear();
+    for (const PolygonPixels& pixels : several) {
+      const std::span<const ColumnRun> runs = pixels.row(row);
+      inside.insert(inside.end(), runs.begin(), runs.end());
+    }
+    std::ranges::sort(inside, {}, &ColumnRun::begin);
+    std::uint32_t end = 0;  // of the runs so far
+    const std::size_t before = runs_.size();
+    for (const ColumnRun& run : inside) {
+      if (outside) {
+        if (run.begin > end) runs_.push_back({end, run.begin});
+      } else if (runs_.size() > before && run.begin <= end) {
+        runs_.back().end = std::max(end, run.end);
+      } else {
+        runs_.push_back(run);
+      }
+      end = std::max(end, run.end);
+    }
+    if (outside && end < raster.columns) runs_.push_back({end, raster.columns});
+    rows.resize(runs_.size(), row);
+  }
+  complete(rows);
+}
+
+/// Finds where rows begin, of runs that are in these rows.
+void PolygonPixels::complete(const std::vector<std::uint32_t>& rows) {
   if (runs_.empty()) {
     first_run_ = {0};
     return;

@@ -22,11 +22,14 @@ struct ColumnRun {
 class PolygonPixels {
  public:
   PolygonPixels(std::span<const std::vector<Point<2>>> rings, const PixelGrid& raster);
+  /// Those that any of several has, or none of them: all pixels of the raster are looked at.
+  PolygonPixels(std::span<const PolygonPixels> several, bool outside, const PixelGrid& raster);
 
   /// The smallest window with all of them; empty if there are none.
   [[nodiscard]] const PixelWindow& window() const { return window_; }
-  /// Those of a row of the raster, which lies in the window; ascending.
+  /// Those of a row of the raster; ascending.
   [[nodiscard]] std::span<const ColumnRun> row(std::uint32_t row) const {
+    if (row < window_.row_begin || row >= window_.row_end) return {};
     const std::size_t r = row - window_.row_begin;
     return std::span(runs_).subspan(first_run_[r], first_run_[r + 1] - first_run_[r]);
   }
@@ -38,6 +41,8 @@ class PolygonPixels {
   }
 
  private:
+  void complete(const std::vector<std::uint32_t>& rows);
+
   PixelWindow window_;
   std::vector<ColumnRun> runs_;
   std::vector<std::size_t> first_run_;  ///< of each row of the window, and the end

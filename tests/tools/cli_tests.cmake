@@ -55,7 +55,8 @@ spillway_command_test(cli_encoded_tests cli
 target_link_libraries(cli_encoded_tests PRIVATE laz_encoder)
 
 spillway_command_test(cli_progress_tests cli
-  tools/report/cli_progress_test.cpp tools/report/progress_lines.cpp)
+  tools/report/cli_figures_test.cpp tools/report/cli_progress_test.cpp
+  tools/report/progress_lines.cpp)
 
 spillway_command_test(cli_batch_tests cli
   tools/commands/cli_batch_resume_test.cpp tools/commands/cli_batch_test.cpp

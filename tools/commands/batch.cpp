@@ -29,6 +29,7 @@
 #include "tools/batch/job_record.h"
 #include "tools/batch/job_steps.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/process/interrupts.h"
 #include "tools/report/json_text.h"
@@ -160,6 +161,7 @@ class Batch {
 
   int run() {
     const auto start = Clock::now();
+    check_figures_file(options_.report, "", "the outputs");
     distributed::forget_launch();  // each job is a process on its own
     prepare();
     progress_.begin("batch", "jobs");
@@ -169,7 +171,7 @@ class Batch {
       progress_.update(ended_, static_cast<double>(ended_) / static_cast<double>(runs_.size()));
     }
     progress_.end(ended_);
-    return summarize(std::chrono::duration<double>(Clock::now() - start).count());
+    return summarize(start);
   }
 
  private:
@@ -382,8 +384,22 @@ class Batch {
         runs_.begin(), runs_.end(), [&](const JobRun& run) { return run.status == status; }));
   }
 
-  int summarize(double seconds) {
+  int summarize(Clock::time_point start) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const std::size_t failed = count("failed");
+    Json jobs = Json::array();
+    for (const JobRun& run : runs_) {
+      jobs.push_back({{"name", run.job.name},
+                      {"status", run.status},
+                      {"log", run.log},
+                      {"record", run.record}});
+    }
+    write_figures(options_.report,
+                  {{"done", count("done")},
+                   {"failed", failed},
+                   {"unchanged", count("unchanged")},
+                   {"jobs", jobs}},
+                  start);
     progress_.say(fmt::format("{} job{}: {} done, {} failed, {} unchanged, {:.1f} s", runs_.size(),
                               runs_.size() == 1 ? "" : "s", count("done"), failed,
                               count("unchanged"), seconds));

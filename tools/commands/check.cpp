@@ -2,6 +2,7 @@
 #include <spillway/check.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "src/geometry/simplex_name.h"
 #include "src/parallel/most_threads.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/report/json_text.h"
@@ -67,7 +69,7 @@ Outcome check_input(const CheckCommandOptions& options, ProgressLine& progress) 
   return outcome;
 }
 
-std::string json_report(const Outcome& outcome, const CheckCommandOptions& options) {
+Json json_report(const Outcome& outcome, const CheckCommandOptions& options) {
   const CheckReport& report = outcome.report;
   Json json;
   json["name"] = options.mesh;
@@ -84,7 +86,7 @@ std::string json_report(const Outcome& outcome, const CheckCommandOptions& optio
   json["fault_count"] = report.fault_count;
   json["other_ties"] = report.other_ties;
   json["faults"] = report.faults;
-  return json_text(json) + "\n";
+  return json;
 }
 
 /// What points and meshes are rounded in.
@@ -139,12 +141,16 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
 }
 
 int run(const CheckCommandOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  check_figures_file(options.report, options.mesh, "the mesh");
   if (options.points.empty()) {
     refuse_given(*options.app, kInputOptionNames, "without --points");
   }
-  ProgressLine progress = make_progress(options.report, options.mesh == "-");
+  ProgressLine progress = make_progress(options.report);
   const Outcome outcome = check_input(options, progress);
-  write_text("-", options.json ? json_report(outcome, options) : text_report(outcome, options));
+  const Json json = json_report(outcome, options);
+  write_text("-", options.json ? json_text(json) + "\n" : text_report(outcome, options));
+  write_figures(options.report, json, start);
   return outcome.report.fault_count == 0 ? kExitDone : kExitFailed;
 }
 

@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "tools/commands/command.h"
+#include "tools/commands/dem_options.h"
 #include "tools/options/command_options.h"
 #include "tools/report/text_output.h"
 
@@ -31,6 +34,26 @@ std::string quoted(const std::string& text) {
   return fmt::format("'{}'", replaced(text, "'", "'\\''"));
 }
 
+/// The words that a value may be, or that its list may begin with. What stands for any text, NAME
+/// or FILE, is none.
+std::vector<std::string> values_of(const OptionInfo& option) {
+  const auto is_called = [&](const char* name) {
+    return std::ranges::find(option.names, name) != option.names.end();
+  };
+  if (is_called("--product")) {
+    std::vector<std::string> names = plain_product_names();
+    names.emplace_back(kCanopy);
+    return names;
+  }
+  if (is_called("--returns")) return {"first", "last", "single"};
+  if (is_called("--memory")) return {"256M", "512M", "1G", "2G", "4G", "8G", "16G"};
+  std::vector<std::string> values = option.words;
+  std::erase_if(values, [](const std::string& word) {
+    return std::ranges::any_of(word, [](unsigned char c) { return std::isupper(c) != 0; });
+  });
+  return values;
+}
+
 std::string bash_script(const CommandLine& root) {
   std::string subcommands = "--help --version";
   std::string options;
@@ -41,14 +64,14 @@ std::string bash_script(const CommandLine& root) {
     std::string words;
     for (const OptionInfo& option : app->options()) {
       if (option.positional) {
-        words = fmt::format("{}", fmt::join(option.words, " "));
+        words = fmt::format("{}", fmt::join(values_of(option), " "));
         continue;
       }
       for (const std::string& name : option.names) {
         names += (names.empty() ? "" : " ") + name;
         if (option.value_name.empty()) continue;
         values += fmt::format("    {}:{}) words=\"{}\" ;;\n", app->name(), name,
-                              fmt::join(option.words, " "));
+                              fmt::join(values_of(option), " "));
       }
     }
     options += fmt::format("    {}:-*) words=\"{}\" ;;\n", app->name(), names);
@@ -76,7 +99,9 @@ std::string bash_script(const CommandLine& root) {
 
 /// What _arguments completes a value with.
 std::string zsh_action(const OptionInfo& option) {
-  if (!option.words.empty()) return fmt::format("({})", fmt::join(option.words, " "));
+  const std::vector<std::string> values = values_of(option);
+  if (!values.empty()) return fmt::format("({})", fmt::join(values, " "));
+  if (option.value_name == "DIR") return "_files -/";
   return option.names_file() ? "_files" : " ";
 }
 
@@ -85,7 +110,7 @@ std::string zsh_argument(const OptionInfo& option) {
       option.value_name.empty()
           ? ""
           : fmt::format(":{}:{}",
-                        replaced(option.words.empty() ? option.value_name : "value", ":", ""),
+                        replaced(values_of(option).empty() ? option.value_name : "value", ":", ""),
                         zsh_action(option));
   if (option.positional) return quoted(fmt::format("{}{}", option.many ? "*" : "", value));
   std::string description = replaced(option.description, ":", "\\:");
@@ -136,9 +161,10 @@ std::string fish_option(const OptionInfo& option) {
     if (!option.positional)
       text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   }
-  if (!option.words.empty()) {
+  const std::vector<std::string> values = values_of(option);
+  if (!values.empty()) {
     text += (option.positional ? " -f -a " : " -x -a ") +
-            quoted(fmt::format("{}", fmt::join(option.words, " ")));
+            quoted(fmt::format("{}", fmt::join(values, " ")));
   } else if (!option.value_name.empty()) {
     text += option.names_file() ? " -r -F" : " -x";
   }

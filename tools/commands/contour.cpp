@@ -107,8 +107,7 @@ int run(const ContourCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const ContourOptions how = contour_options(options);
   check_statistics_file(options, options.output, "the lines");
-  ProgressLine progress =
-      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress = make_progress(options.report, options.output);
   const Context context = terrain_context(options, progress);
   const auto contours = create_contours(options.output, how, context);
   const TracedReport report = send_terrain(options, *contours, context);

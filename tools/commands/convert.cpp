@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,8 +15,10 @@
 #include "formats/meshes/mesh_formats.h"
 #include "formats/points/create_points.h"
 #include "src/error.h"
+#include "src/geometry/canonical_hash.h"
 #include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/commands/skipped_inputs.h"
 #include "tools/commands/tile_files.h"
 #include "tools/options/command_options.h"
@@ -127,8 +130,36 @@ void tell_changes(const PointConversion& done, ProgressLine& progress) {
   if (!done.points.all_kept()) progress.say(describe(done.points));
 }
 
-int run_points(const ConvertCommandOptions& options, const Context& context,
-               ProgressLine& progress) {
+Json figures_of(const ConvertCommandOptions& options, const PointConversion& done) {
+  return {{"inputs", options.inputs},
+          {"output", options.output.path},
+          {"points", done.written},
+          {"filters", to_json(done.points)},
+          {"skipped_files", to_json(done.skipped_files)},
+          {"lost", done.lost},
+          {"farthest", done.farthest},
+          {"cells", done.cells},
+          {"spilled_points", done.spilled_points},
+          {"spilled_bytes", done.spilled_bytes}};
+}
+
+Json figures_of(const ConvertCommandOptions& options, const Report& report) {
+  return {{"inputs", options.inputs},
+          {"output", options.output.path},
+          {"output_files", report.output_files},
+          {"outside_tiles", report.outside_tiles},
+          {"outside_vertices", report.outside_vertices},
+          {"points", report.mesh.points},
+          {"duplicates", report.mesh.duplicates},
+          {"vertices", report.mesh.vertices},
+          {"simplices", report.mesh.simplices},
+          {"hull_facets", report.mesh.hull_facets},
+          {"canonical_hash", hash_to_hex(report.mesh.canonical_hash)},
+          {"lost", report.lost}};
+}
+
+int run_points(const ConvertCommandOptions& options, const Context& context, ProgressLine& progress,
+               std::chrono::steady_clock::time_point start) {
   refuse_given(*options.app, {"--tiles"}, "on points: a mesh is cut into tiles");
   check_points_output(options);
   const PointOutput& output = options.output;
@@ -147,6 +178,7 @@ int run_points(const ConvertCommandOptions& options, const Context& context,
   how.metadata = true;
   const auto points = open_points(options.inputs, how, context);
   const PointConversion done = convert(*points, *file, context);
+  write_figures(options.report, figures_of(options, done), start);
   tell_changes(done, progress);
   progress.detail(fmt::format("peak memory {} bytes", peak_memory()));
   if (!options.sorted) {
@@ -182,15 +214,16 @@ std::string files_of(const std::string& output, const MeshFormat& format) {
   return format.file_set != nullptr ? format.file_set->names(output) : output;
 }
 
-void run_mesh(const ConvertCommandOptions& options, const Context& context,
-              ProgressLine& progress) {
+void run_mesh(const ConvertCommandOptions& options, const Context& context, ProgressLine& progress,
+              std::chrono::steady_clock::time_point start) {
   const std::string& input = options.inputs.front();
   if (options.inputs.size() > 1) {
     throw UsageError("several meshes do not become one: convert them one by one");
   }
   std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
   const TileChoice tiles = parse_tiles(options.tiles);
-  if (!options.input.crs.empty() || !tiles.polygons.empty()) {
+  std::erase_if(of_points, [](auto name) { return name.starts_with("--clip"); });
+  if (!options.input.crs.empty() || !tiles.polygons.empty() || !options.input.clip.empty()) {
     std::erase_if(of_points, [](auto name) { return name == "--crs" || name == "--force-crs"; });
   }
   of_points.insert(of_points.end(), {"--scale", "--offset", "--force", "--las-version", "--sorted",
@@ -209,11 +242,14 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context,
                                  .attributes = attribute_names(options.attributes),
                                  .tile_side = tiles.side,
                                  .tile_polygons = tiles.polygons,
+                                 .clip = clip_of(options.input),
                                  .foreign_crs = options.input.force_crs},
                                 context);
   const Report report = convert(*mesh, *file, context);
+  write_figures(options.report, figures_of(options, report), start);
   const MeshTotals& totals = report.mesh;
   if (!report.lost.empty()) progress.say(fmt::format("not kept: {}", fmt::join(report.lost, ", ")));
+  if (!options.input.clip.empty()) say_clipped(report, progress);
   if (!options.tiles.empty()) say_mesh_tiles(report, output.path, progress);
   progress.say(fmt::format("{} vertices, {} simplices in {}", totals.vertices, totals.simplices,
                            files_of(output.path, format)));
@@ -229,18 +265,19 @@ void check_axes(std::string_view option, const std::vector<double>& values) {
 }
 
 int run(const ConvertCommandOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  check_figures_file(options.report, options.output.path, "the output");
   check_axes("--scale", options.scale);
   check_axes("--offset", options.offset);
   if (!options.sorted) {
     refuse_given(*options.app, {"--cell-points", "--dim"}, "without --sorted");
   }
-  const bool reads_pipe = std::ranges::find(options.inputs, "-") != options.inputs.end();
-  ProgressLine progress = make_progress(options.report, reads_pipe);
+  ProgressLine progress = make_progress(options.report, options.output.path);
   const Context context(context_options(options.memory, 0, progress));
   if (kind_of(options, context) == InputKind::kPoints) {
-    return run_points(options, context, progress);
+    return run_points(options, context, progress, start);
   }
-  run_mesh(options, context, progress);
+  run_mesh(options, context, progress, start);
   return kExitDone;
 }
 

@@ -156,8 +156,7 @@ int run(const DemCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const DemOptions how = dem_options(options);
   check_statistics_file(options, options.output, "the raster");
-  ProgressLine progress =
-      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress = make_progress(options.report, options.output);
   const Context context = terrain_context(options, progress);
   const auto dem = create_dem(options.output, how, context);
   const TracedReport report = options.products == kCanopy

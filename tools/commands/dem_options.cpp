@@ -42,13 +42,6 @@ float parse_nodata(const std::string& text) {
   return static_cast<float>(*value) + 0.0F;  // -0 becomes 0
 }
 
-/// Those that --product has by name; percentiles have their number there.
-std::vector<std::string> plain_product_names() {
-  std::vector<std::string> names = dem_product_names();
-  names.pop_back();
-  return names;
-}
-
 /// Sets products and percentiles.
 void parse_products(const std::string& text, DemOptions& dem) {
   if (text == kCanopy) {
@@ -154,6 +147,12 @@ Extent parse_raster_bounds(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> plain_product_names() {
+  std::vector<std::string> names = dem_product_names();
+  names.pop_back();
+  return names;
+}
+
 void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   app.add_option("-o,--output", options.output,
                  "GeoTIFF file; of --tiles a pattern, like dtm_{x}_{y}.tif")
@@ -236,6 +235,9 @@ void add_dem_options(CommandLine& app, DemCommandOptions& options) {
   app.add_flag("--compute-edges", options.compute_edges,
                "Make slopes and the like also where neighbours have no data")
       .group(group);
+  app.add_flag("--clip-pixels", options.input.clips_product,
+               "Let --clip leave pixels without data, and use all points")
+      .group(group);
   app.add_flag("--fill-voids", options.fill_voids,
                "Give min, max, mean and percentiles of pixels without points the triangle's height")
       .group(group);
@@ -287,6 +289,8 @@ DemOptions dem_options(const DemCommandOptions& options) {
       options.gradient == "horn" ? GradientMethod::kHorn : GradientMethod::kZevenbergenThorne;
   dem.compute_edges = options.compute_edges;
   dem.fill_voids = options.fill_voids;
+  dem.clip = product_clip(options.input);
+  if (options.input.clips_product) dem.foreign_crs = options.input.force_crs;
   dem.type = options.type == "byte" ? PixelType::kByte : PixelType::kFloat32;
   dem.azimuth = options.azimuth;
   dem.altitude = options.altitude;

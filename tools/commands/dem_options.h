@@ -35,6 +35,9 @@ struct DemCommandOptions : TerrainOptions {
   std::string z_factor;
 };
 
+/// The words that --product has besides kCanopy and percentiles, which have their number there.
+std::vector<std::string> plain_product_names();
+
 void add_dem_options(CommandLine& app, DemCommandOptions& options);
 
 /// What is to be made. Throws UsageError for options that are wrong or contradict each other.

@@ -13,6 +13,7 @@
 #include "formats/points/create_points.h"
 #include "formats/points/point_formats.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/options/point_output.h"
 #include "tools/report/usage_error.h"
@@ -86,20 +87,28 @@ GenerateOptions points_of(const GenerateCommandOptions& options) {
           .seed = options.seed};
 }
 
-/// Writes one file; returns how many points and where they went.
-std::string write_file(const GenerateCommandOptions& options, const std::string& format,
-                       const Context& context) {
+/// What was written, in words and in figures.
+struct Written {
+  std::string text;
+  std::uint64_t points = 0;
+  std::uint64_t files = 1;
+};
+
+/// Writes one file.
+Written write_file(const GenerateCommandOptions& options, const std::string& format,
+                   const Context& context) {
   const auto points = generate_points(points_of(options));
   const auto file = create_points(
       options.output.path,
       {.format = format, .las_version = options.output.las_version, .exact = true}, context);
   const PointConversion done = convert(*points, *file, context);
-  return fmt::format("{} points of {} written to {}", done.written, options.family,
-                     options.output.name());
+  return {fmt::format("{} points of {} written to {}", done.written, options.family,
+                      options.output.name()),
+          done.written};
 }
 
-std::string write_grid(const GenerateCommandOptions& options, const std::string& format,
-                       const Context& context) {
+Written write_grid(const GenerateCommandOptions& options, const std::string& format,
+                   const Context& context) {
   const GridSize size = parse_grid(options.grid);
   const GridReport done = generate_grid(points_of(options), options.output.path,
                                         {.columns = size.columns,
@@ -115,23 +124,30 @@ std::string write_grid(const GenerateCommandOptions& options, const std::string&
   if (const std::uint64_t empty = tiles - done.files; empty > 0) {
     text += fmt::format(", none for {} tile{} without points", empty, empty == 1 ? "" : "s");
   }
-  return text;
+  return {text, done.points, done.files};
 }
 
 int run(const GenerateCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_options(options);
+  check_figures_file(options.report, options.output.path, "the points");
   const bool is_grid = !options.grid.empty();
   const std::string format = is_grid ? options.output.format : format_name_of(options.output);
   check_las_version(options.output,
                     point_format_to_write(options.output.path, format).has_versions);
   // How messages are written is settled before there is anything that an interruption would remove.
-  ProgressLine progress = make_progress(options.report);
+  ProgressLine progress = make_progress(options.report, options.output.path);
   const Context context(context_options({}, 0, progress));
-  const std::string done =
+  const Written done =
       is_grid ? write_grid(options, format, context) : write_file(options, format, context);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  progress.say(fmt::format("{}, {:.2f} s", done, seconds.count()));
+  write_figures(options.report,
+                {{"family", options.family},
+                 {"output", options.output.path},
+                 {"output_files", done.files},
+                 {"points", done.points}},
+                start);
+  progress.say(fmt::format("{}, {:.2f} s", done.text, seconds.count()));
   return kExitDone;
 }
 

@@ -201,7 +201,7 @@ int run(const HeightCommandOptions& options) {
                  "with --min-height or --max-height, which leave out points without a height");
   }
   check_statistics_file(options, options.output.path, "the points");
-  ProgressLine progress = make_progress(options.report, pipes(options.inputs) > 0);
+  ProgressLine progress = make_progress(options.report, options.output.path);
   reuse_freed_memory();
   const Context context(context_options(options.memory, thread_count(options), progress));
   const auto file = create_points(options.output.path,

@@ -18,6 +18,7 @@
 #include "src/geometry/canonical_hash.h"
 #include "src/runtime/process_memory.h"
 #include "tools/commands/command.h"
+#include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
 #include "tools/process/rank_job.h"
@@ -374,7 +375,7 @@ void add_common_keys(double seconds, Json& json) {
   json["seconds"] = seconds;
 }
 
-void tell(const std::string& path, const InfoOptions& options, const Context& context,
+Json tell(const std::string& path, const InfoOptions& options, const Context& context,
           Total& total) {
   const auto start = std::chrono::steady_clock::now();
   Json json = describe_input(path, options, context, total);
@@ -383,6 +384,7 @@ void tell(const std::string& path, const InfoOptions& options, const Context& co
                     json);
   }
   write_text("-", options.json ? json_text(json) + "\n" : describe(json));
+  return json;
 }
 
 /// Whether an input is points, or cannot be looked at, which is told in its turn.
@@ -406,8 +408,9 @@ void check_point_options(const std::vector<std::string>& paths, const InfoOption
 }
 
 int run(const InfoOptions& options) {
-  ProgressLine progress = make_progress(
-      options.report, std::count(options.files.begin(), options.files.end(), "-") > 0);
+  const auto start = std::chrono::steady_clock::now();
+  check_figures_file(options.report, "", "the text");
+  ProgressLine progress = make_progress(options.report);
   const Context context(context_options(options.memory, 0, progress));
   const std::vector<std::string> paths = expand_inputs(options.files, context);
   if (!given_options(*options.app, kInputOptionNames).empty()) {
@@ -422,10 +425,11 @@ int run(const InfoOptions& options) {
     refuse_given(*options.app, filters, "with --fast, which reads no points");
   }
   Total total;
+  Json files = Json::array();
   int exit_code = kExitDone;
   for (const std::string& path : paths) {
     try {
-      tell(path, options, context, total);
+      files.push_back(tell(path, options, context, total));
     } catch (const InvalidArgument&) {
       throw;
     } catch (const ClosedPipe&) {
@@ -440,6 +444,7 @@ int run(const InfoOptions& options) {
   if (total.files() > 1) {
     write_text("-", options.json ? json_text(total.json()) + "\n" : describe(total.json()));
   }
+  write_figures(options.report, {{"files", files}}, start);
   return exit_code;
 }
 

@@ -141,8 +141,7 @@ int run(const RenderCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const PictureOptions how = picture_options(options);
   check_outputs(options);
-  ProgressLine progress =
-      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress = make_progress(options.report, options.output);
   const Context context = terrain_context(options, progress);
   const auto picture = create_picture(options.output, how, context);
   const TracedReport report = send_terrain(options, *picture, context);

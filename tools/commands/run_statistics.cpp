@@ -7,6 +7,7 @@
 
 #include "formats/disk/output_check.h"
 #include "src/distributed/ranks.h"
+#include "src/runtime/process_memory.h"
 #include "tools/process/interrupts.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/command_trace.h"
@@ -31,12 +32,26 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
   if (!options.tasks_path.empty() && distributed::launch().as_ranks) {
     throw UsageError("--tasks is for one process: start it without mpirun");
   }
-  check_place(options.stats_path, output, product, "--stats");
   check_place(options.tasks_path, output, product, "--tasks");
-  check_place(options.tasks_path, options.stats_path, "--stats", "--tasks");
-  for (const std::string& path : {options.stats_path, options.tasks_path}) {
-    if (!path.empty() && is_first_rank()) check_can_create(path);
-  }
+  check_place(options.tasks_path, options.report.stats_path, "--stats", "--tasks");
+  check_figures_file(options.report, output, product);
+  if (!options.tasks_path.empty()) check_can_create(options.tasks_path);
+}
+
+void check_figures_file(const ReportOptions& options, const std::string& output,
+                        std::string_view product) {
+  check_place(options.stats_path, output, product, "--stats");
+  if (!options.stats_path.empty() && is_first_rank()) check_can_create(options.stats_path);
+}
+
+void write_figures(const ReportOptions& options, const Json& figures,
+                   std::chrono::steady_clock::time_point start) {
+  if (options.stats_path.empty()) return;
+  Json json = {{"version", SPILLWAY_VERSION}};
+  for (const Json::Member& member : figures.members()) json[member.name] = member.value;
+  json["peak_rss_bytes"] = peak_memory();
+  json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_text(options.stats_path, json_text(json, 2) + "\n");
 }
 
 TracedReport trace_run(const TriangulationOptions& options, TriangulateOptions how,
@@ -75,10 +90,10 @@ RunFacts facts_of_run(const TriangulationOptions& options, const std::string& ou
 
 void write_statistics(const TriangulationOptions& options, const TracedReport& report,
                       const RunFacts& facts, const Json& product) {
-  if (options.stats_path.empty()) return;
+  if (options.report.stats_path.empty()) return;
   Json json = to_json(report, facts);
   for (const Json::Member& member : product.members()) json[member.name] = member.value;
-  write_text(options.stats_path, json_text(json, 2) + "\n");
+  write_text(options.report.stats_path, json_text(json, 2) + "\n");
 }
 
 }  // namespace spillway::command

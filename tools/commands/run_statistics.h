@@ -1,5 +1,5 @@
 #pragma once
-// --stats and --tasks of the subcommands that triangulate points.
+// --stats of all subcommands, and --tasks of those that triangulate points.
 
 #include <spillway/triangulate.h>
 
@@ -15,6 +15,16 @@
 #include "tools/simulate/run_recorder.h"
 
 namespace spillway::command {
+
+/// Throws UsageError if --stats would go where the output goes, which messages call `product`, and
+/// Failure if its file cannot be made.
+void check_figures_file(const ReportOptions& options, const std::string& output,
+                        std::string_view product);
+
+/// Writes the file of --stats, if it is asked for: `figures`, behind what all have in common, the
+/// version, and before what they end with, the memory and the seconds since `start`.
+void write_figures(const ReportOptions& options, const Json& figures,
+                   std::chrono::steady_clock::time_point start);
 
 /// Throws UsageError if --stats or --tasks would go where the other or the run's output goes, which
 /// messages call `product`, or if --tasks is given to one of several ranks, and Failure if a file of

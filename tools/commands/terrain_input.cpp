@@ -27,6 +27,12 @@ void refuse_options_of_points(const TerrainOptions& options) {
     if (is_of_crs && options.uses_crs && !options.input.crs.empty()) return true;
     return std::ranges::find(options.own_options, name) != options.own_options.end();
   });
+  if (options.input.clips_product) {
+    std::erase_if(names, [](std::string_view name) {
+      return name == "--clip" || name == "--clip-buffer" || name == "--clip-outside" ||
+             name == "--force-crs";
+    });
+  }
   refuse_given(*options.app, names, fmt::format("on {}, which is a mesh", options.inputs.front()));
 }
 

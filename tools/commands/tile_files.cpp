@@ -33,6 +33,12 @@ void refuse_pattern(const std::string& output) {
   throw UsageError(fmt::format("{}: braces in a name are for tiles; give --tiles, too", output));
 }
 
+void say_clipped(const Report& report, ProgressLine& progress) {
+  if (report.outside_tiles == 0) return;
+  progress.say(fmt::format("{} {} clipped, and {} vertices with them", report.outside_tiles,
+                           simplices_of(report.dimension), report.outside_vertices));
+}
+
 void say_mesh_tiles(const Report& report, const std::string& output, ProgressLine& progress) {
   if (report.outside_tiles > 0) {
     progress.insist(fmt::format("warning: {} {} are in none of the tiles, and in no file",

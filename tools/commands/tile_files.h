@@ -25,6 +25,9 @@ TileChoice parse_tiles(const std::string& tiles);
 /// Throws UsageError if an output is called like tiles, which are not asked for.
 void refuse_pattern(const std::string& output);
 
+/// Says what is left out of a mesh that was clipped.
+void say_clipped(const Report& report, ProgressLine& progress);
+
 /// Says to which tiles a mesh has gone.
 void say_mesh_tiles(const Report& report, const std::string& output, ProgressLine& progress);
 

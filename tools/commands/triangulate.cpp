@@ -87,6 +87,8 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
       "Under mpirun: a file for each rank, NAME.0.EXT, NAME.1.EXT, ... (vtu: and NAME.pvtu)");
   add_tiles(app, options.tiles,
             "A file for each square of this side, or each polygon of a file, of whole simplices");
+  app.add_flag("--clip-simplices", options.input.clips_product,
+               "Let --clip leave out simplices by their centroids, and use all points");
   add_choice(app, "--output-format", options.output_format, mesh_format_names(),
              "Format of the mesh, where the name does not tell");
   add_triangulation_options(app, options);
@@ -136,6 +138,9 @@ void say(const TriangulateCommandOptions& options, const Report& report, const R
   }
   if (!options.tiles.empty()) {
     say_mesh_tiles(report, options.output, progress);
+  }
+  if (options.input.clips_product) {
+    say_clipped(report, progress);
   }
   if (report.spilled_points > 0) {
     progress.detail(
@@ -234,8 +239,7 @@ int run(const TriangulateCommandOptions& options) {
   check_options(options);
   const auto start = std::chrono::steady_clock::now();
   std::optional<RunRecorder> recorder(std::in_place);
-  ProgressLine progress =
-      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress = make_progress(options.report, options.output);
   ContextOptions limits =
       context_options(options.memory, options.simulates() ? 1 : thread_count(options), progress);
   limits.executor = rank_executor();
@@ -248,6 +252,7 @@ int run(const TriangulateCommandOptions& options) {
                                  .attributes = attribute_names(options.attributes),
                                  .tile_side = tiles.side,
                                  .tile_polygons = tiles.polygons,
+                                 .clip = product_clip(options.input),
                                  .foreign_crs = options.input.force_crs},
                                 context);
   const auto points =

@@ -146,8 +146,7 @@ int run(const VolumeCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
   check_statistics_file(options, "", "the volumes");
-  ProgressLine progress =
-      make_progress(options.report, std::ranges::count(options.inputs, "-") > 0);
+  ProgressLine progress = make_progress(options.report);
   const Context context = terrain_context(options, progress);
   const Measured measured = measure(options, context, progress);
   warn_of_uncovered(options, measured.volume, progress);

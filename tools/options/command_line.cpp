@@ -19,8 +19,8 @@ bool takes_many(const CLI::Option& option) {
 
 /// The headings of a command line's options, those first that are needed first.
 std::vector<std::string> groups_in_order(const CLI::App& app) {
-  constexpr std::array<std::string_view, 4> kLast = {kFilterGroup, kResourceGroup, kReportGroup,
-                                                     kTuningGroup};
+  constexpr std::array<std::string_view, 5> kLast = {kFilterGroup, kTableGroup, kResourceGroup,
+                                                     kReportGroup, kTuningGroup};
   std::vector<std::string> groups = app.get_groups();
   std::ranges::stable_sort(groups, {}, [&](const std::string& group) {
     const auto place = std::ranges::find(kLast, group);
@@ -180,7 +180,11 @@ Option Option::commas_separate() {
 }
 
 bool OptionInfo::names_file() const {
-  return words.empty() && (value_name == "FILE" || value_name == "IN" || value_name == "MESH");
+  if (words.empty()) {
+    return value_name == "FILE" || value_name == "DIR" || value_name == "IN" ||
+           value_name == "MESH";
+  }
+  return std::ranges::find(words, "FILE") != words.end();
 }
 
 struct CommandLine::Impl {

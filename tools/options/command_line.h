@@ -20,6 +20,7 @@ namespace spillway::command {
 
 /// Headings in help of options that are needed less often than those of a subcommand itself. They
 /// come last, in this order.
+inline constexpr const char* kTableGroup = "How text is written (where it does not show)";
 inline constexpr const char* kFilterGroup = "Filters (of the points that are read)";
 inline constexpr const char* kResourceGroup = "Threads, memory and disk";
 inline constexpr const char* kReportGroup = "Messages and figures";
@@ -70,7 +71,7 @@ struct OptionInfo {
   bool required = false;
   bool many = false;  ///< takes several values
 
-  /// Whether the value is a file's name.
+  /// Whether the value may be a file's or a folder's name.
   [[nodiscard]] bool names_file() const;
 };
 

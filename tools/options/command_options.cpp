@@ -1,6 +1,7 @@
 #include "tools/options/command_options.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,6 +34,25 @@ std::vector<double> parse_numbers(const std::string& text) {
     begin = end + 1;
   }
   return numbers;
+}
+
+bool is_pipe(int file) {
+  struct stat status {};
+  return ::fstat(file, &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
+/// Says that the limit is more than there is.
+void warn_of_memory(const MemoryOptions& options, ProgressLine& progress) {
+  if (options.limit.empty()) return;
+  const std::uint64_t limit = parse_memory_size(options.limit);
+  const std::uint64_t there = machine_memory();
+  const auto processes = static_cast<std::uint64_t>(distributed::launch().ranks_here);
+  if (limit <= there / processes) return;
+  progress.say(fmt::format(
+      "warning: --memory {}{} is more than the {} that this machine has, so the run may be killed "
+      "for it; a limit below keeps what is too much on the disk",
+      options.limit, processes > 1 ? fmt::format(" of {} processes", processes) : "",
+      memory_size_text(there)));
 }
 
 }  // namespace
@@ -78,6 +98,7 @@ ContextOptions context_options(const MemoryOptions& options, unsigned threads,
     throw Failure(fmt::format("--scratch-folder: cannot write to {}: {}", parent,
                               std::generic_category().message(errno)));
   }
+  warn_of_memory(options, progress);
   return {.memory = fmt::format("{}", memory_limit(options)),
           .threads = threads,
           .scratch_folder = parent,
@@ -146,13 +167,16 @@ void add_report_options(CommandLine& app, ReportOptions& options) {
   add_choice(app, "--progress", options.progress, {"auto", "plain", "json", "none"},
              "Progress on standard error")
       .group(kReportGroup);
+  app.add_option("--stats", options.stats_path, "Write figures of the run, as JSON")
+      .value_name("FILE")
+      .group(kReportGroup);
   const Option quiet =
       app.add_flag("-q,--quiet", options.quiet, "Say nothing on standard error but errors")
           .group(kReportGroup);
   app.add_flag("-v,--verbose", options.verbose, "Say more").group(kReportGroup).excludes(quiet);
 }
 
-ProgressLine make_progress(const ReportOptions& options, bool reads_pipe) {
+ProgressLine make_progress(const ReportOptions& options, std::string_view output) {
   if (!is_first_rank()) return {ProgressStyle::kNone, true, false};
   ProgressStyle style = ProgressStyle::kPlain;
   if (options.quiet || options.progress == "none") {
@@ -162,7 +186,8 @@ ProgressLine make_progress(const ReportOptions& options, bool reads_pipe) {
   } else if (options.progress == "auto" && isatty(STDERR_FILENO) != 0) {
     const char* terminal = std::getenv("TERM");
     if (terminal != nullptr && std::string_view(terminal) != "dumb") {
-      style = reads_pipe ? ProgressStyle::kTerminalOfAPipe : ProgressStyle::kTerminal;
+      style = output == "-" && is_pipe(STDOUT_FILENO) ? ProgressStyle::kEndsOnTerminal
+                                                      : ProgressStyle::kTerminal;
     }
   }
   return {style, options.quiet, options.verbose};

@@ -24,14 +24,14 @@ struct ReportOptions {
   std::string progress = "auto";
   bool quiet = false;
   bool verbose = false;
+  std::string stats_path;
 };
 void add_report_options(CommandLine& app, ReportOptions& options);
 
 /// The reporter that the options ask for. "auto" is a rewritten line on a terminal, else plain
-/// lines; of several ranks the first one reports. Where the input is a pipe, there is no line in
-/// the first phase: all commands of the chain share the terminal, and that of the first one stays
-/// readable.
-ProgressLine make_progress(const ReportOptions& options, bool reads_pipe = false);
+/// lines; of several ranks the first one reports. `output` is the run's file, if it has one: if that
+/// is a pipe, whoever reads it has the line of the terminal.
+ProgressLine make_progress(const ReportOptions& options, std::string_view output = "");
 
 /// --memory, --scratch-folder, --max-tmp.
 struct MemoryOptions {

@@ -43,7 +43,6 @@ bool InputOptions::filters() const {
 void add_input_options(CommandLine& app, InputOptions& options) {
   add_choice(app, "--input-format", options.format, point_format_names(),
              "Format of the points, if neither name nor first bytes tell it");
-  add_table_options(app, options.table);
   take_parsed(
       app.add_option("--crs", options.crs,
                      "Coordinate system of inputs that name none: EPSG:n, WKT, or a file with WKT"),
@@ -113,6 +112,7 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   app.add_flag("--skip-broken", options.skip_broken,
                "Leave out files that cannot be read; name them at the end, with exit code 1")
       .group(group);
+  add_table_options(app, options.table);
 }
 
 std::vector<int> parse_classes(std::string_view text) {
@@ -244,6 +244,20 @@ std::array<double, 2> parse_z_range(std::string_view text) {
       "\"{}\" is no range of heights; give the lowest and the highest, as 10,250.5", text));
 }
 
+Clip clip_of(const InputOptions& options) {
+  if (options.clip.empty() &&
+      (options.clip_buffer != 0 || options.clip_outside || options.clips_product)) {
+    throw UsageError(
+        "--clip-buffer, --clip-outside, --clip-pixels and --clip-simplices have no effect without "
+        "--clip");
+  }
+  return {options.clip, options.clip_buffer, options.clip_outside};
+}
+
+Clip product_clip(const InputOptions& options) {
+  return options.clips_product ? clip_of(options) : Clip{};
+}
+
 PointOptions point_options(const InputOptions& options, int dimension) {
   PointOptions points;
   points.dimension = dimension;
@@ -260,12 +274,8 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   if (!options.returns.empty()) points.returns = parse_returns(options.returns);
   if (!options.bounds.empty()) points.bounds = parse_bounds(options.bounds);
   if (!options.z_range.empty()) points.z_range = parse_z_range(options.z_range);
-  if (options.clip.empty() && (options.clip_buffer != 0 || options.clip_outside)) {
-    throw UsageError("--clip-buffer and --clip-outside have no effect without --clip");
-  }
-  points.clip = options.clip;
-  points.clip_buffer = options.clip_buffer;
-  points.clip_outside = options.clip_outside;
+  const Clip clip = clip_of(options);
+  if (!options.clips_product) points.clip = clip;
   if (!options.thin.empty()) points.thin = parse_thinning(options.thin);
   points.resolution = options.resolution;
   if (!options.crs.empty()) points.crs = parse_crs(options.crs);

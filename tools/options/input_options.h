@@ -1,6 +1,7 @@
 #pragma once
 // What all subcommands that read points have in common: which inputs, and which of their points.
 
+#include <spillway/clip.h>
 #include <spillway/mesh.h>
 #include <spillway/points.h>
 
@@ -37,6 +38,7 @@ struct InputOptions {
   std::string clip;
   double clip_buffer = 0;
   bool clip_outside = false;
+  bool clips_product = false;  ///< what is made of points is clipped, and not these
   std::string thin;
   double resolution = 0;
 
@@ -53,13 +55,16 @@ inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
     "--clip",         "--clip-buffer", "--clip-outside",  "--thin",      "--resolution",
     "--salvage"};
 
-/// The heading in help of the options that are filters.
-
 /// --input-format, --columns, --crs, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);
 
 /// The same for open_points(). Throws UsageError for wrong options.
 PointOptions point_options(const InputOptions& options, int dimension);
+
+/// What --clip and the options beside it tell. Throws UsageError for these without --clip.
+Clip clip_of(const InputOptions& options);
+/// The same for what is made of points, if that is clipped; else no clip.
+Clip product_clip(const InputOptions& options);
 
 /// Checks the value of --where. Throws UsageError for what is no condition.
 void parse_condition(const std::string& text);

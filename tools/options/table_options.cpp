@@ -71,7 +71,8 @@ void add_table_options(CommandLine& app, TableOptions& options) {
   take_parsed(app.add_option("--columns", options.columns,
                              "Of text, the columns of x, y, z: as 3,2,4, as PNEZD, by names as "
                              "Easting,Northing,Height, or by characters as 1-10,11-20,21-28")
-                  .value_name("LIST"),
+                  .value_name("LIST")
+                  .group(kTableGroup),
               [](const std::string& text) {
                 TextTable table;
                 parse_columns(text, table);
@@ -79,17 +80,19 @@ void add_table_options(CommandLine& app, TableOptions& options) {
   take_whole_number(app.add_option("--skip-lines", options.skip_lines,
                                    "Of text, leave out so many lines at the top"),
                     0)
-      .value_name("N");
-  take_parsed(app.add_option("--separator", options.separator,
-                             "Of text, what separates columns: comma, semicolon, tab or blanks")
-                  .value_name("SIGN"),
+      .value_name("N")
+      .group(kTableGroup);
+  take_parsed(app.add_option("--separator", options.separator, "Of text, what separates columns")
+                  .value_name("comma|semicolon|tab|blanks")
+                  .group(kTableGroup),
               parse_separator);
-  take_parsed(
-      app.add_option("--decimal", options.decimal, "Of text, the decimal sign: point or comma")
-          .value_name("SIGN"),
-      parse_decimal);
+  take_parsed(app.add_option("--decimal", options.decimal, "Of text, the decimal sign")
+                  .value_name("point|comma")
+                  .group(kTableGroup),
+              parse_decimal);
   app.add_flag("--no-header", options.no_header,
-               "Of text, the first line is a row, and comments name no columns");
+               "Of text, the first line is a row, and comments name no columns")
+      .group(kTableGroup);
 }
 
 TextTable text_table(const TableOptions& options) {
@@ -127,11 +130,11 @@ void parse_columns(std::string_view text, TextTable& table) {
     table.column_names = {parts.begin(), parts.end()};
     return;
   }
-  throw UsageError(fmt::format(
-      "\"{}\" does not tell columns; give the numbers of x, y and z, as 3,2,4, or their names, or "
-      "their characters in a line, as 1-10,11-20,21-28, or a letter for each column, as PNEZD, "
-      "with one X or E, one Y or N, and at most one Z or H",
-      text));
+  throw UsageError(
+      fmt::format("\"{}\" does not tell columns; give x, y and z by numbers, as 3,2,4, by names, "
+                  "by characters, "
+                  "as 1-10,11-20,21-28, or a letter for each column, as PNEZD",
+                  text));
 }
 
 char parse_separator(std::string_view text) {

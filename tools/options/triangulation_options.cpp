@@ -62,13 +62,10 @@ void add_triangulation_options(CommandLine& app, TriangulationOptions& options) 
   app.add_flag("--no-trust-headers", options.distrust_headers,
                "Read all points before triangulating, as headers may lie about their extent")
       .group(kTuningGroup);
-  app.add_option("--stats", options.stats_path, "Write figures of the run")
-      .value_name("FILE")
-      .group(kReportGroup);
   app.add_option("--tasks", options.tasks_path,
                  "Write the run's tasks, a line of JSON for each tile and merge of tiles")
       .value_name("FILE")
-      .group(kReportGroup);
+      .group(kTuningGroup);
   take_whole_number(app.add_option("--leaf-points", options.leaf_points,
                                    "Most points of one sequential base case (a leaf); 0: chosen by "
                                    "number and memory"))

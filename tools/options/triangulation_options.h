@@ -26,7 +26,6 @@ struct TriangulationOptions {
   unsigned threads = 0;
   MemoryOptions memory;
   bool distrust_headers = false;
-  std::string stats_path;
   std::string tasks_path;
   std::size_t leaf_points = 0;
   std::size_t tile_points = 0;

@@ -13,7 +13,7 @@ namespace {
 MessageStyle message_style(ProgressStyle style) {
   switch (style) {
     case ProgressStyle::kTerminal:
-    case ProgressStyle::kTerminalOfAPipe:
+    case ProgressStyle::kEndsOnTerminal:
       return MessageStyle::kTerminal;
     case ProgressStyle::kJson:
       return MessageStyle::kJson;
@@ -25,7 +25,6 @@ MessageStyle message_style(ProgressStyle style) {
 std::chrono::milliseconds period(ProgressStyle style) {
   switch (style) {
     case ProgressStyle::kTerminal:
-    case ProgressStyle::kTerminalOfAPipe:
       return std::chrono::milliseconds(100);
     case ProgressStyle::kJson:
       return std::chrono::seconds(1);
@@ -58,9 +57,8 @@ void ProgressLine::begin(const std::string& phase, const std::string& unit) {
   {
     const std::lock_guard lock(mutex_);
     phase_ = {Clock::now(), {.phase = phase, .unit = unit, .fraction = {}}};
-    ++phases_;
   }
-  if (style_ == ProgressStyle::kNone) return;
+  if (style_ == ProgressStyle::kNone || style_ == ProgressStyle::kEndsOnTerminal) return;
   try {
     ticker_ = std::jthread([this](const std::stop_token& stop) { tick_until_stopped(stop); });
   } catch (const std::system_error&) {
@@ -144,9 +142,7 @@ void ProgressLine::detail(std::string_view message) {
   if (verbose_) say(message);
 }
 
-bool ProgressLine::rewrites() const {
-  return style_ == ProgressStyle::kTerminal || style_ == ProgressStyle::kTerminalOfAPipe;
-}
+bool ProgressLine::rewrites() const { return style_ == ProgressStyle::kTerminal; }
 
 void ProgressLine::tick_until_stopped(const std::stop_token& stop) {
   std::unique_lock sleep(sleep_mutex_);
@@ -177,9 +173,9 @@ void ProgressLine::show(const PhaseState& state, const std::lock_guard<std::mute
     case ProgressStyle::kPlain:
       write_to_standard_error("spillway: " + progress_line(state) + "\n");
       break;
-    case ProgressStyle::kTerminalOfAPipe:
-      if (phases_ == 1) break;
-      [[fallthrough]];
+    case ProgressStyle::kEndsOnTerminal:
+      write_to_standard_error("\r\x1b[Kspillway: " + progress_line(state) + "\n");
+      break;
     case ProgressStyle::kTerminal:
       wipe(lock);
       write_to_standard_error(progress_line(state));

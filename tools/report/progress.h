@@ -19,8 +19,8 @@ enum class ProgressStyle {
   kNone,
   kPlain,     ///< a line at the end of a phase and every few seconds
   kTerminal,  ///< one line that is rewritten ten times a second
-  /// Likewise, but not in the first phase, in which whoever fills a pipe shows a line of its own.
-  kTerminalOfAPipe,
+  /// A line at the end of a phase on a terminal on which another process rewrites one.
+  kEndsOnTerminal,
   kJson,  ///< a JSON object a line, every second and at the end of a phase; messages likewise
 };
 
@@ -81,7 +81,6 @@ class ProgressLine {
   const bool quiet_;
   const bool verbose_;
   std::mutex mutex_;  // guards the next three and what stands on standard error
-  std::uint64_t phases_ = 0;
   Phase phase_;
   std::optional<Phase> inner_;
   std::mutex sleep_mutex_;

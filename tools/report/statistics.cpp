@@ -88,14 +88,6 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-Json to_json(const std::vector<SkippedFile>& files) {
-  Json json = Json::array();
-  for (const SkippedFile& file : files) {
-    json.push_back({{"path", file.path}, {"message", file.message}});
-  }
-  return json;
-}
-
 /// "ranks": what all of them have sent, and what each has done.
 Json ranks(const TracedReport& report) {
   RankStatistics sent;
@@ -121,11 +113,19 @@ Json ranks(const TracedReport& report) {
 
 }  // namespace
 
+Json to_json(const std::vector<SkippedFile>& files) {
+  Json json = Json::array();
+  for (const SkippedFile& file : files) {
+    json.push_back({{"path", file.path}, {"message", file.message}});
+  }
+  return json;
+}
+
 Json to_json(const PointCounts& counts) {
   return {{"read", counts.read},     {"invalid", counts.invalid}, {"withheld", counts.withheld},
           {"every", counts.skipped}, {"class", counts.classes},   {"returns", counts.returns},
-          {"bounds", counts.bounds}, {"clip", counts.clip}, {"thinned", counts.thinned}, {"kept", counts.kept()},
-          {"lost", counts.lost},     {"where", counts.where}};
+          {"bounds", counts.bounds}, {"clip", counts.clip},       {"thinned", counts.thinned},
+          {"kept", counts.kept()},   {"lost", counts.lost},       {"where", counts.where}};
 }
 
 Json to_json(const TracedReport& report, const RunFacts& facts) {

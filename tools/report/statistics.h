@@ -31,6 +31,9 @@ struct TracedReport : Report {
 /// The object that --stats writes. docs/cli.md lists the keys; they are stable.
 Json to_json(const TracedReport& report, const RunFacts& facts);
 
+/// "skipped_files" of --stats.
+Json to_json(const std::vector<SkippedFile>& files);
+
 /// "filters" of --stats and of `info`.
 Json to_json(const PointCounts& counts);
 

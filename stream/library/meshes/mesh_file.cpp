@@ -16,7 +16,10 @@
 #include "src/geometry/simplex_name.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/points/attribute_records.h"
+#include "stream/library/points/clip_polygons.h"
 #include "stream/library/products/surface_units.h"
+#include "stream/library/tiling/clipped_mesh.h"
+#include "stream/library/tiling/vector_tiling.h"
 
 namespace spillway::stream {
 namespace {
@@ -47,11 +50,26 @@ MeshTarget mesh_target(const std::string& path, const std::string& format_name, 
   return {path, &format, parts};
 }
 
+namespace {
+
+std::unique_ptr<MeshTiling> make_mesh_tiling(const std::string& path,
+                                             const MeshFileOptions& options) {
+  check_clip(options.clip);
+  const bool has_tiles = options.tile_side != 0 || !options.tile_polygons.empty();
+  if (options.clip.polygons.empty()) {
+    return make_vector_tiling(path, options.tile_side, options.tile_polygons);
+  }
+  if (has_tiles) throw InvalidArgument("a mesh is clipped, or cut into tiles, not both");
+  return std::make_unique<ClippedMesh>(path, options.clip);
+}
+
+}  // namespace
+
 MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, const Context& context)
     : OwnSink(context),
       target_(mesh_target(path, options.format, options.parts)),
       options_(options),
-      tiling_(make_vector_tiling(path, options.tile_side, options.tile_polygons)),
+      tiling_(make_mesh_tiling(path, options)),
       scratch_(context.state().scratch(context)),
       run_scratch_(scratch_.get()) {
   if (target_.parts && context.options().executor == nullptr) {
@@ -66,9 +84,11 @@ MeshFile::MeshFile(const std::string& path, const MeshFileOptions& options, cons
 void MeshFile::check_tiles() const {
   if (context().options().executor != nullptr) {
     throw InvalidArgument(
-        "tiles of a mesh are written by one process: let several write one mesh, and convert that");
+        "tiles of a mesh, and one that is clipped, are written by one process: let several write "
+        "one "
+        "mesh, and convert that");
   }
-  check_can_create(target_.path);
+  if (target_.path != "-") check_can_create(target_.path);
 }
 
 /// As if the format held all.
@@ -111,8 +131,9 @@ BlockSink& MeshFile::open(const MeshStart& start) {
   if (start.files != nullptr) files_ = start.files;
   if (start.scratch != nullptr) run_scratch_ = start.scratch;
   if (tiling_ && !options_.foreign_crs) {
-    check_same_crs(start.name, header_.crs, options_.tile_polygons, tiling_->crs(),
-                   options_.tile_polygons);
+    const std::string& polygons =
+        options_.clip.polygons.empty() ? options_.tile_polygons : options_.clip.polygons;
+    check_same_crs(start.name, header_.crs, polygons, tiling_->crs(), polygons);
   }
   return open_writer();
 }
@@ -165,6 +186,11 @@ void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/
 
 void MeshFile::write_tiles(RunWatch& watch, Report& report) {
   MeshTiles::Written written = tiles_->write(*target_.format, context(), watch);
+  if (written.paths.empty() && !options_.clip.polygons.empty()) {
+    throw Failure(fmt::format("none of the {} lies where {} says, so nothing is written",
+                              simplices_, options_.clip.polygons),
+                  ErrorCode::kInvalidArgument);
+  }
   report.output_bytes = written.bytes;
   report.output_files = written.paths.size();
   report.outside_tiles = tiles_->outside();

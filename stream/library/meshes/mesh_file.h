@@ -10,7 +10,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/tiling/mesh_tiles.h"
-#include "stream/library/tiling/vector_tiling.h"
+#include "stream/library/tiling/mesh_tiling.h"
 
 namespace spillway::stream {
 
@@ -65,7 +65,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
 
   MeshTarget target_;
   const MeshFileOptions options_;
-  std::unique_ptr<VectorTiling> tiling_;  ///< null: one file
+  std::unique_ptr<MeshTiling> tiling_;  ///< null: one file
   std::shared_ptr<ScratchFolder> scratch_;
   FileSystem* files_ = &disk();
   ScratchFolder* run_scratch_;  ///< this one, or that of a run that can go on

@@ -47,11 +47,11 @@ bool OpenedPoints::identify(RunIdentity& identity) const {
                                 : "none");
   add("z_range",
       options_.z_range ? fmt::format("{}", fmt::join(*options_.z_range, " to ")) : "all");
-  add("clip", options_.clip.empty()
+  add("clip", options_.clip.polygons.empty()
                   ? "none"
-                  : fmt::format("{} of {}, {}", options_.clip_outside ? "outside" : "inside",
-                                options_.clip, options_.clip_buffer));
-  if (!options_.clip.empty()) identity.add_file("clip", options_.clip);
+                  : fmt::format("{} of {}, {}", options_.clip.outside ? "outside" : "inside",
+                                options_.clip.polygons, options_.clip.buffer));
+  if (!options_.clip.polygons.empty()) identity.add_file("clip", options_.clip.polygons);
   add("transformed to", options_.to_crs);
   add("multiplier of heights", options_.z_multiplier);
   add("thinning", options_.thin ? fmt::format("{} of kind {}", options_.thin->cell,

@@ -23,6 +23,7 @@
 #include "stream/library/context/executor.h"
 #include "stream/library/given_crs.h"
 #include "stream/library/points/attribute_records.h"
+#include "stream/library/points/clip_polygons.h"
 #include "stream/library/points/public_points.h"
 #include "stream/library/products/surface_units.h"
 
@@ -93,20 +94,6 @@ PointFilter filter_of(const PointOptions& options) {
   }
   if (options.z_range) keep_heights(*options.z_range, filter.bounds);
   return filter;
-}
-
-/// The polygons, and their coordinate system.
-ClipArea clip_area_of(const PointOptions& options, std::string& crs) {
-  if (!std::isfinite(options.clip_buffer)) {
-    throw InvalidArgument(fmt::format("a buffer of {} is no distance", options.clip_buffer));
-  }
-  PolygonLayer layer = options.clip_buffer == 0
-                           ? gdal().read_polygons(options.clip)
-                           : gdal().read_buffers(options.clip, options.clip_buffer);
-  crs = std::move(layer.crs);
-  std::vector<PolygonEdges> polygons;
-  for (const PolygonFeature& polygon : layer.polygons) polygons.emplace_back(polygon.rings);
-  return {std::move(polygons), options.clip_outside};
 }
 
 ThinningRequest thinning_of(const Thin& thin, std::uint64_t memory, ScratchFolder& scratch) {
@@ -267,10 +254,11 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.reader.metadata = options.metadata;
   how.reader.resolution = options.resolution;
   how.filter = filter_of(options);
-  if (!options.clip.empty()) {
-    how.filter.clip = std::make_shared<ClipArea>(clip_area_of(options, clip_crs_));
-  } else if (options.clip_buffer != 0 || options.clip_outside) {
-    throw InvalidArgument("there is nothing to clip by: name a file of polygons");
+  check_clip(options.clip);
+  if (!options.clip.polygons.empty()) {
+    const PolygonLayer layer = read_clip(options.clip);
+    clip_crs_ = layer.crs;
+    how.filter.clip = std::make_shared<ClipArea>(clip_area(layer, options.clip.outside));
   }
   how.crs = {checked_crs(options.crs), options.foreign_crs};
   if (!(options.z_multiplier > 0) || std::isinf(options.z_multiplier)) {
@@ -318,8 +306,8 @@ void OpenedPoints::check_input(const PointOptions& options, const Context& conte
     throw InvalidArgument("the points have no z to choose them by");
   }
   if (options.z_multiplier != 1) check_multiplied(options, context);
-  if (!options.clip.empty() && !options.foreign_crs) {
-    check_same_crs(name_, input_->crs(), options.clip, clip_crs_, options.clip);
+  if (!options.clip.polygons.empty() && !options.foreign_crs) {
+    check_same_crs(name_, input_->crs(), options.clip.polygons, clip_crs_, options.clip.polygons);
   }
   if (!options.attributes.empty()) refuse_unknown_names(options.attributes, offered());
 }

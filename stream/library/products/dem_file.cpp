@@ -20,6 +20,7 @@
 #include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/executor.h"
+#include "stream/library/points/clip_polygons.h"
 #include "stream/library/products/pixels_in_memory.h"
 #include "stream/library/products/surface_units.h"
 #include "stream/plan/memory_plan.h"
@@ -182,6 +183,14 @@ DemFile::DemFile(const DemOptions& options, const Context& context)
   dem_options_.nodata = options_.nodata;
   dem_options_.memory = own_memory(context.memory());
   dem_options_.threads = feeding_threads(context.threads());
+  check_clip(options_.clip);
+  if (!options_.clip.polygons.empty()) {
+    if (!options_.tile_polygons.empty()) {
+      throw InvalidArgument("tiles are polygons, or the raster is clipped by some, not both");
+    }
+    clip_ = read_clip(options_.clip);
+    dem_options_.sheets = [this](const PixelGrid& raster) { return lay_tiles(raster); };
+  }
 }
 
 DemFile::DemFile(const std::string& path, const DemOptions& options, const Context& context)
@@ -298,6 +307,11 @@ void DemFile::identify(RunIdentity& identity) const {
   add("percentiles", fmt::format("{}", fmt::join(options_.percentiles, " ")));
   add("filled voids", options_.fill_voids);
   add("side of tiles", options_.tile_side);
+  if (clip_) {
+    add("clip",
+        fmt::format("{}, {}", options_.clip.outside ? "outside" : "inside", options_.clip.buffer));
+    identity.add_file("polygons of the clip", options_.clip.polygons);
+  }
   if (!options_.tile_polygons.empty()) identity.add_file("polygons", options_.tile_polygons);
   if (tiling_) {  // some may be written
     add("nodata", dem_options_.nodata);
@@ -408,6 +422,10 @@ PixelGrid DemFile::grid_of(const Box<2>& extent) const {
 void DemFile::check_crs(const MeshStart& start) const {
   if (options_.foreign_crs) return;
   check_same_crs(start.name, start.header.crs, options_.like, like_.crs, options_.like);
+  if (clip_) {
+    const std::string& polygons = options_.clip.polygons;
+    check_same_crs(start.name, start.header.crs, polygons, clip_->crs, polygons);
+  }
   if (tiling_) {
     check_same_crs(start.name, start.header.crs, options_.tile_polygons, tiling_->crs(),
                    options_.tile_polygons);
@@ -444,8 +462,22 @@ void DemFile::give_share(ShareSender& sender) {
   with_threads(dem_options_.threads, [&] { stream::give_share(*dem_, sender); });
 }
 
+/// Pixels that the clip keeps.
+std::shared_ptr<const PolygonPixels> DemFile::clipped(const PixelGrid& raster) const {
+  std::vector<PolygonPixels> polygons;
+  for (const PolygonFeature& polygon : clip_->polygons)
+    polygons.emplace_back(polygon.rings, raster);
+  return std::make_shared<PolygonPixels>(polygons, options_.clip.outside, raster);
+}
+
 std::vector<SheetPlace> DemFile::lay_tiles(const PixelGrid& raster) {
+  std::shared_ptr<const PolygonPixels> outline;
+  if (clip_) outline = clipped(raster);
+  if (!tiling_) return {{{0, raster.rows, 0, raster.columns}, outline}};
   tiles_ = tiling_->tiles(raster);
+  if (outline) {
+    for (RasterTile& tile : tiles_) tile.outline = outline;
+  }
   std::vector<SheetPlace> places;
   for (const RasterTile& tile : tiles_) places.push_back({tile.window, tile.outline});
   return places;

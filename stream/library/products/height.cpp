@@ -286,9 +286,7 @@ PointOptions ground_options(const PointOptions& points, const std::vector<int>& 
   ground.where.clear();
   ground.bounds.reset();
   ground.z_range.reset();
-  ground.clip.clear();
-  ground.clip_buffer = 0;
-  ground.clip_outside = false;
+  ground.clip = {};
   ground.thin.reset();
   ground.resolution = 0;
   ground.metadata = false;

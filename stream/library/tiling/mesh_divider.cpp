@@ -20,8 +20,7 @@ std::optional<std::uint64_t> index_of(const MeshStreamBlock& block, std::uint32_
 
 }  // namespace
 
-MeshDivider::MeshDivider(const MeshStreamHeader& header, VectorTiling& tiling,
-                         RecordsByTile& records)
+MeshDivider::MeshDivider(const MeshStreamHeader& header, MeshTiling& tiling, RecordsByTile& records)
     : header_(header), tiling_(tiling), records_(records) {}
 
 /// In output coordinates. Of sorted numbers, so that it does not depend on the order of corners.

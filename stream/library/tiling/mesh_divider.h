@@ -8,9 +8,9 @@
 
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/stream_vertices.h"
+#include "stream/library/tiling/mesh_tiling.h"
 #include "stream/library/tiling/records_by_tile.h"
 #include "stream/library/tiling/tile_mesh.h"
-#include "stream/library/tiling/vector_tiling.h"
 
 namespace spillway::stream {
 
@@ -20,7 +20,7 @@ namespace spillway::stream {
 class MeshDivider final : public BlockSink {
  public:
   /// `tiling` and `records` must outlive it.
-  MeshDivider(const MeshStreamHeader& header, VectorTiling& tiling, RecordsByTile& records);
+  MeshDivider(const MeshStreamHeader& header, MeshTiling& tiling, RecordsByTile& records);
 
   void write(MeshStreamBlock&& block) override;
   void finish(const MeshTotals& totals) override;
@@ -63,7 +63,7 @@ class MeshDivider final : public BlockSink {
                    const MeshStreamBlock& block);
 
   const MeshStreamHeader header_;
-  VectorTiling& tiling_;
+  MeshTiling& tiling_;
   RecordsByTile& records_;
   std::vector<TileCounts> counts_;
   StreamVertices<Vertex> live_;

@@ -9,7 +9,7 @@
 
 namespace spillway::stream {
 
-MeshTiles::MeshTiles(const MeshStreamHeader& header, VectorTiling& tiling, std::uint64_t memory,
+MeshTiles::MeshTiles(const MeshStreamHeader& header, MeshTiling& tiling, std::uint64_t memory,
                      ScratchFolder& scratch)
     : header_(header),
       tiling_(tiling),

@@ -12,8 +12,8 @@
 #include "formats/meshes/common/mesh_format.h"
 #include "stream/library/context/run_watch.h"
 #include "stream/library/tiling/mesh_divider.h"
+#include "stream/library/tiling/mesh_tiling.h"
 #include "stream/library/tiling/records_by_tile.h"
-#include "stream/library/tiling/vector_tiling.h"
 
 namespace spillway::stream {
 
@@ -21,7 +21,7 @@ namespace spillway::stream {
 class MeshTiles {
  public:
   /// `memory` is for what waits; `scratch` must outlive it.
-  MeshTiles(const MeshStreamHeader& header, VectorTiling& tiling, std::uint64_t memory,
+  MeshTiles(const MeshStreamHeader& header, MeshTiling& tiling, std::uint64_t memory,
             ScratchFolder& scratch);
 
   [[nodiscard]] BlockSink& blocks() { return divider_; }
@@ -44,7 +44,7 @@ class MeshTiles {
                            const Context& context, RunWatch& watch);
 
   const MeshStreamHeader header_;
-  VectorTiling& tiling_;
+  MeshTiling& tiling_;
   ScratchFolder& scratch_;
   RecordsByTile records_;
   MeshDivider divider_;

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
@@ -40,7 +43,7 @@ std::vector<Row> rows_of(const std::string& text) {
 class PointsOnAMap : public ::testing::Test {
  protected:
   PointsOnAMap() {
-    work_.succeed("spillway generate terrain -n 20000 --seed 6 -q -o plain.las");
+    work_.succeed("spillway generate terrain -n 100000 --seed 6 -q -o plain.las");
     work_.succeed("spillway convert plain.las --crs EPSG:32633 -q -o in.las");
     work_.succeed("spillway convert in.las --attributes none -q -o in.csv");
     work_.succeed("(echo x,y,z; cat in.csv) > named.csv");
@@ -52,8 +55,9 @@ class PointsOnAMap : public ::testing::Test {
                 "4100130.0053,500110.0037 4100110.0053))\"\n"
                 "2,\"POLYGON ((500200.0037 4100090.0053,500260.0037 4100090.0053,500260.0037 "
                 "4100150.0053,500200.0037 4100150.0053,500200.0037 4100090.0053))\"\n");
-    work_.write("road.csv",
-                "n,WKT\n1,\"LINESTRING (500050 4100070,500150 4100120,500150 4100250)\"\n");
+    work_.write(
+        "road.csv",
+        "n,WKT\n1,\"LINESTRING (500050 4100070,500150.0037 4100120,500150.0037 4100250)\"\n");
   }
 
   /// The points that a run keeps, and its messages.
@@ -256,6 +260,100 @@ TEST_F(PointsOnAMap, InDegreesOrWithHeightsInAnotherUnitAreSpokenOf) {
               HasSubstr("x and y are degrees, which are no lengths"));
   EXPECT_THAT(work_.run("spillway triangulate degrees.las --to-crs EPSG:32633 -o x.spm").err,
               Not(HasSubstr("degrees")));
+}
+
+std::string hash_of(const Workspace& work, const std::string& mesh) {
+  return nlohmann::json::parse(work.succeed("spillway info -q --json " + mesh))["canonical_hash"];
+}
+
+/// What one polygon cuts out is the tile of that polygon.
+TEST_F(PointsOnAMap, MeshesAreClippedToWholeSimplicesByTheirCentroids) {
+  work_.succeed("spillway triangulate -q in.las -o whole.spm");
+  work_.succeed("spillway convert -q whole.spm -o 'tile_{n}.spm' --tiles area.csv --force-crs");
+  work_.succeed("head -2 area.csv > one.csv");
+  work_.succeed("spillway convert -q whole.spm -o clipped.spm --clip one.csv --force-crs");
+  EXPECT_EQ(hash_of(work_, "clipped.spm"), hash_of(work_, "tile_1.spm"));
+  const auto simplices = [&](const std::string& arguments) {
+    work_.succeed("spillway convert whole.spm -o part.spm --stats s.json --force-crs " + arguments +
+                  " 2> said.txt");
+    EXPECT_THAT(work_.read("said.txt"), HasSubstr("triangles clipped, and "));
+    const auto stats = nlohmann::json::parse(work_.read("s.json"));
+    EXPECT_EQ(
+        nlohmann::json::parse(work_.succeed("spillway info -q --json part.spm"))["simplices"],
+        stats["simplices"].get<std::uint64_t>() - stats["outside_tiles"].get<std::uint64_t>());
+    return stats["outside_tiles"].get<std::uint64_t>();
+  };
+  const std::uint64_t outside = simplices("--clip area.csv");
+  const std::uint64_t inside = simplices("--clip area.csv --clip-outside");
+  EXPECT_EQ(outside + inside,
+            nlohmann::json::parse(work_.succeed("spillway info -q --json whole.spm"))["simplices"]);
+  EXPECT_LT(simplices("--clip area.csv --clip-buffer 5"), outside);
+  work_.succeed(
+      "spillway triangulate -q in.las -o direct.spm --clip one.csv --clip-simplices --force-crs");
+  EXPECT_EQ(hash_of(work_, "direct.spm"), hash_of(work_, "clipped.spm"));
+  work_.succeed("spillway convert -q whole.spm -o - --clip one.csv --force-crs > piped.spm");
+  EXPECT_EQ(hash_of(work_, "piped.spm"), hash_of(work_, "clipped.spm"));
+  work_.succeed(
+      "spillway convert -q whole.spm -o small.spm --clip one.csv --force-crs --memory 32M");
+  EXPECT_EQ(work_.read("small.spm"), work_.read("clipped.spm"));
+}
+
+TEST_F(PointsOnAMap, AClippedMeshOfNothingAndWrongClipsAreErrors) {
+  work_.succeed("spillway triangulate -q in.las -o whole.spm");
+  work_.write("far.csv", "n,WKT\n1,\"POLYGON ((0 0,1 0,1 1,0 0))\"\n");
+  const auto error_of = [&](const std::string& arguments, int code) {
+    const Result result = work_.run("spillway " + arguments);
+    EXPECT_EQ(result.exit_code, code) << arguments;
+    EXPECT_FALSE(work_.has("o.spm") || work_.has("o.tif")) << arguments;
+    return result.err;
+  };
+  EXPECT_THAT(error_of("convert whole.spm -o o.spm --clip far.csv --force-crs", 1),
+              HasSubstr("none of the triangles lies where far.csv says"));
+  EXPECT_THAT(error_of("convert whole.spm -o o.spm --clip area.csv --tiles 100 --force-crs", 2),
+              HasSubstr("not both"));
+  EXPECT_THAT(error_of("convert whole.spm -o o.spm --clip-outside", 2),
+              HasSubstr("no effect without --clip"));
+  EXPECT_THAT(error_of("triangulate in.las -o o.spm --clip-simplices", 2),
+              HasSubstr("no effect without --clip"));
+  EXPECT_THAT(error_of("dem in.las -o o.tif --resolution 5 --clip-pixels", 2),
+              HasSubstr("no effect without --clip"));
+  EXPECT_THAT(error_of("convert whole.spm -o o.spm --clip none.csv", 1), HasSubstr("none.csv"));
+}
+
+TEST_F(PointsOnAMap, RastersAreClippedByPixelsAsByGdalwarp) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const std::string dem =
+      "spillway dem -q in.las --resolution 2 --compress none --bounds "
+      "500000,4100000,500300,4100300 --force-crs";
+  work_.succeed(dem + " -o whole.tif");
+  work_.succeed(dem + " -o clipped.tif --clip area.csv --clip-pixels");
+  work_.succeed("ogr2ogr -q -a_srs EPSG:32633 area.gpkg area.csv");
+  work_.succeed("gdalwarp -q -cutline area.gpkg -dstnodata -9999 whole.tif warped.tif");
+  const auto pixels = [&](const std::string& name) {
+    return work_.succeed("gdal_translate -q -of XYZ " + name + " /vsistdout/");
+  };
+  EXPECT_EQ(pixels("clipped.tif"), pixels("warped.tif"));
+  EXPECT_NE(pixels("clipped.tif"), pixels("whole.tif"));
+  work_.succeed(dem + " -o outside.tif --clip area.csv --clip-pixels --clip-outside");
+  const std::vector<Row> whole = rows_of(pixels("whole.tif"));
+  const std::vector<Row> inside = rows_of(pixels("clipped.tif"));
+  const std::vector<Row> outside = rows_of(pixels("outside.tif"));
+  ASSERT_EQ(whole.size(), inside.size());
+  ASSERT_EQ(whole.size(), outside.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    EXPECT_EQ(std::max(inside[i][2], outside[i][2]), whole[i][2]);
+    EXPECT_TRUE(whole[i][2] == -9999 || (inside[i][2] == -9999) != (outside[i][2] == -9999));
+  }
+  work_.succeed("spillway triangulate -q in.las -o whole.spm");
+  work_.succeed(
+      "spillway dem -q whole.spm --resolution 2 --compress none --bounds "
+      "500000,4100000,500300,4100300 --clip area.csv --clip-pixels --force-crs -o mesh.tif");
+  EXPECT_EQ(pixels("mesh.tif"), pixels("clipped.tif"));
+  work_.succeed(
+      "spillway dem -q in.las --resolution 2 --force-crs --bounds 500000,4100000,500300,4100300 "
+      "--clip area.csv --clip-pixels --tiles 100 -o 't_{x}_{y}.tif'");
+  work_.succeed("gdalbuildvrt -q all.vrt -te 500000 4100000 500300 4100300 t_*.tif");
+  EXPECT_EQ(pixels("all.vrt"), pixels("clipped.tif"));
 }
 
 }  // namespace

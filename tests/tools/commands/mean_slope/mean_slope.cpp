@@ -45,7 +45,7 @@ struct MeanSlope {
 };
 
 int run(const TerrainOptions& options) {
-  ProgressLine progress = make_progress(options.report, false);
+  ProgressLine progress = make_progress(options.report);
   const Context context = terrain_context(options, progress);
   Product<MeanSlope> product(context);
   (void)send_terrain(options, product.sink(), context);
