@@ -1,5 +1,6 @@
 // What files hold, and whether a mesh is a Delaunay triangulation.
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <spillway/check.h>
 #include <spillway/info.h>
@@ -52,6 +53,35 @@ py::dict counts_of(const std::vector<std::uint64_t>& counts) {
   return all;
 }
 
+py::dict flags_of(const PointsInfo& info) {
+  py::dict all;
+  for (const auto& [name, count] : info.flags) all[py::str(name)] = count;
+  return all;
+}
+
+/// As in the JSON of the command; None where the file is no text.
+py::object table_of(const PointsInfo& info) {
+  if (!info.table) return py::none();
+  const TableInfo& table = *info.table;
+  py::object columns = py::cast(table.columns);
+  if (!table.characters.empty()) {
+    py::list ranges;
+    for (const auto& [first, last] : table.characters) {
+      ranges.append(fmt::format("{}-{}", first, last));
+    }
+    columns = ranges;
+  }
+  py::dict told;
+  told["separator"] = table.separator;
+  told["decimal"] = table.decimal == ',' ? "comma" : "point";
+  told["names"] = table.names.empty() ? py::object(py::none()) : texts_of(table.names);
+  told["columns"] = columns;
+  told["counts_downwards"] = table.counts_downwards;
+  told["first_line"] = table.first_line == 0 ? py::object(py::none()) : py::cast(table.first_line);
+  told["first_rows"] = texts_of(table.first_rows);
+  return told;
+}
+
 py::dict points_info(Run& run, const std::string& path, const PointOptions& options, bool fast) {
   PointsInfo info;
   run.expect(kPhasesOfInfo);
@@ -82,6 +112,8 @@ py::dict points_info(Run& run, const std::string& path, const PointOptions& opti
   statistics["cells"] = info.cells;
   statistics["classes"] = counts_of(info.classes);
   statistics["returns"] = counts_of(info.returns);
+  statistics["flags"] = flags_of(info);
+  statistics["table"] = table_of(info);
   py::list attributes = statistics_of(info.attributes);
   for (std::size_t a = 0; a < info.ranges.size(); ++a) {
     if (std::isnan(info.ranges[a][0])) continue;

@@ -290,7 +290,8 @@ class PointsInfo(_Report):
 
     `attributes` is what points carry, as in the JSON of ``spillway info``: dicts with "name" and
     "type", "min" and "max" where there are values, and what else there is to say. `classes` and
-    `returns` tell how many points are of each of these numbers.
+    `returns` tell how many points are of each of these numbers, `flags` how many have each flag of
+    LAS. `table` tells how a text was understood, as in the JSON of ``spillway info``.
     """
 
     format: str
@@ -310,6 +311,8 @@ class PointsInfo(_Report):
     cells: Optional[int]
     classes: dict[int, int]
     returns: dict[int, int]
+    flags: dict[str, int]
+    table: Optional[dict[str, Any]]
     attributes: list[dict[str, Any]]
 
     def _summary(self) -> str:

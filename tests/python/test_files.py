@@ -308,6 +308,40 @@ class InfoAndCheck(InFolder):
                 self.assertEqual(bytes_of("b.csv"), bytes_of("a.csv"))
                 self.assertGreater(report.written, 0)
 
+    def test_meshes_are_clipped_as_by_the_command(self):
+        spillway.generate("terrain", 2000, "hills.las")
+        low, high = spillway.info("hills.las").extent
+        x = round((low[0] + high[0]) / 2) + 0.0037
+        with open("area.csv", "w", encoding="utf8") as file:
+            file.write(f'n,WKT\n1,"POLYGON ((0 0,{x} 0,{x} 9000000,0 9000000,0 0))"\n')
+        command("triangulate", "hills.las", "-o", "whole.spm")
+        command("convert", "whole.spm", "-o", "a.spm", "--clip", "area.csv", "--clip-outside")
+        report = spillway.convert("whole.spm", "b.spm", clip="area.csv", clip_outside=True)
+        self.assertGreater(report.outside_tiles, 0)
+        spillway.triangulate(
+            "hills.las", "c.spm", clip="area.csv", clip_outside=True, clip_simplices=True
+        )
+        self.assertEqual(bytes_of("b.spm"), bytes_of("a.spm"))
+        self.assertEqual(spillway.info("c.spm").canonical_hash, spillway.info("a.spm").canonical_hash)
+        with self.assertRaisesRegex(spillway.errors.InvalidArgumentError, "clip"):
+            spillway.triangulate("hills.las", "d.spm", clip_simplices=True)
+        raster = spillway.dem("hills.las", resolution=5, clip="area.csv", clip_pixels=True)
+        whole = spillway.dem("hills.las", resolution=5)
+        seen = ~np.isnan(raster.values)
+        self.assertEqual(raster.values.shape, whole.values.shape)
+        self.assertTrue((raster.values[seen] == whole.values[seen]).all())
+        columns = np.arange(seen.shape[1]) * 5 + 2.5 + raster.geotransform[0]
+        self.assertFalse(seen[:, columns > x].any())
+        self.assertTrue((seen == ~np.isnan(whole.values))[:, columns < x].all())
+
+    def test_columns_of_fixed_width_and_what_is_told_of_a_table(self):
+        with open("fixed.txt", "w", encoding="utf8") as file:
+            file.write("1    1000.505000.25  100.10 EP\n2    1003.255010.75  101.20 TREE\n")
+        spillway.convert("fixed.txt", "a.csv", columns=[(6, 12), (13, 20), (21, 27)])
+        self.assertEqual(bytes_of("a.csv"), b"1000.5,5000.25,100.1\n1003.25,5010.75,101.2\n")
+        told = spillway.info("fixed.txt", columns=[(6, 12), (13, 20), (21, 27)]).table
+        self.assertEqual((told["separator"], told["columns"]), ("none", ["6-12", "13-20", "21-27"]))
+
     def test_what_is_said_of_a_table_is_as_by_the_command(self):
         with open("table.txt", "w", encoding="utf8") as file:
             file.write("station\nNr;Rechts;Hoch;NN\n" + "1;1,5;2,5;3,5\n2;4;5;6\n3;0;9;7\n")
@@ -413,7 +447,7 @@ class Options(unittest.TestCase):
             for call in (spillway.blocks, spillway.triangulate)
         )
         self.assertEqual(found - expected, {"mesh_format"})
-        self.assertEqual(expected - found, {"output", "output_format", "tiles"})
+        self.assertEqual(expected - found, {"output", "output_format", "tiles", "clip_simplices"})
 
 
 class Errors(InFolder):

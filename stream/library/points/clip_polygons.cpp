@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "formats/gdal/gdal.h"
 #include "src/error.h"
@@ -29,6 +30,15 @@ ClipArea clip_area(const PolygonLayer& layer, bool outside) {
   std::vector<PolygonEdges> polygons;
   for (const PolygonFeature& polygon : layer.polygons) polygons.emplace_back(polygon.rings);
   return {std::move(polygons), outside};
+}
+
+std::shared_ptr<const PolygonPixels> clipped_pixels(const PolygonLayer& layer, bool outside,
+                                                    const PixelGrid& raster) {
+  std::vector<PolygonPixels> polygons;
+  for (const PolygonFeature& polygon : layer.polygons) {
+    polygons.emplace_back(polygon.rings, raster);
+  }
+  return std::make_shared<PolygonPixels>(polygons, outside, raster);
 }
 
 }  // namespace spillway::stream

@@ -2,10 +2,11 @@
 
 #include <spillway/clip.h>
 
-#include <string>
-#include <vector>
+#include <memory>
 
 #include "formats/gdal/polygon_layer.h"
+#include "src/geometry/pixel_grid.h"
+#include "src/terrain/polygon_pixels.h"
 #include "stream/source/clip_area.h"
 
 namespace spillway::stream {
@@ -19,5 +20,9 @@ PolygonLayer read_clip(const Clip& clip);
 
 /// The area that it keeps.
 ClipArea clip_area(const PolygonLayer& layer, bool outside);
+
+/// The pixels of a raster that it keeps, by their centres.
+std::shared_ptr<const PolygonPixels> clipped_pixels(const PolygonLayer& layer, bool outside,
+                                                    const PixelGrid& raster);
 
 }  // namespace spillway::stream

@@ -462,17 +462,9 @@ void DemFile::give_share(ShareSender& sender) {
   with_threads(dem_options_.threads, [&] { stream::give_share(*dem_, sender); });
 }
 
-/// Pixels that the clip keeps.
-std::shared_ptr<const PolygonPixels> DemFile::clipped(const PixelGrid& raster) const {
-  std::vector<PolygonPixels> polygons;
-  for (const PolygonFeature& polygon : clip_->polygons)
-    polygons.emplace_back(polygon.rings, raster);
-  return std::make_shared<PolygonPixels>(polygons, options_.clip.outside, raster);
-}
-
 std::vector<SheetPlace> DemFile::lay_tiles(const PixelGrid& raster) {
   std::shared_ptr<const PolygonPixels> outline;
-  if (clip_) outline = clipped(raster);
+  if (clip_) outline = clipped_pixels(*clip_, options_.clip.outside, raster);
   if (!tiling_) return {{{0, raster.rows, 0, raster.columns}, outline}};
   tiles_ = tiling_->tiles(raster);
   if (outline) {

@@ -13,7 +13,6 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/gdal/polygon_layer.h"
 #include "formats/gdal/raster.h"
-#include "src/terrain/polygon_pixels.h"
 #include "stream/library/meshes/engine_sink.h"
 #include "stream/library/tiling/raster_tiling.h"
 #include "stream/sinks/dem.h"
@@ -70,7 +69,6 @@ class DemFile final : public OwnSink<DemSink> {
   [[nodiscard]] std::uint64_t check_early_files() const;
   [[nodiscard]] std::vector<std::string> written_files() const;
   [[nodiscard]] std::vector<SheetPlace> lay_tiles(const PixelGrid& raster);
-  [[nodiscard]] std::shared_ptr<const PolygonPixels> clipped(const PixelGrid& raster) const;
   void write_vrt(const std::vector<std::string>& files);
 
   std::string path_;             ///< empty: pixels_ takes them; of tiles, a pattern
