@@ -81,10 +81,19 @@ PolygonPixels::PolygonPixels(std::span<const PolygonPixels> several, bool outsid
                              const PixelGrid& raster) {
   std::vector<std::uint32_t> rows;
   std::vector<ColumnRun> inside;
+  std::vector<const PolygonPixels*> next;  // by their first rows
+  for (const PolygonPixels& pixels : several) next.push_back(&pixels);
+  const auto first_row = [](const PolygonPixels* pixels) { return pixels->window_.row_begin; };
+  std::ranges::stable_sort(next, {}, first_row);
+  std::vector<const PolygonPixels*> here;  // those that may have pixels in the row
+  auto coming = next.begin();
   for (std::uint32_t row = 0; row < raster.rows; ++row) {
     inside.clear();
-    for (const PolygonPixels& pixels : several) {
-      const std::span<const ColumnRun> runs = pixels.row(row);
+    for (; coming != next.end() && first_row(*coming) <= row; ++coming) here.push_back(*coming);
+    std::erase_if(here,
+                  [&](const PolygonPixels* pixels) { return pixels->window_.row_end <= row; });
+    for (const PolygonPixels* const pixels : here) {
+      const std::span<const ColumnRun> runs = pixels->row(row);
       inside.insert(inside.end(), runs.begin(), runs.end());
     }
     std::ranges::sort(inside, {}, &ColumnRun::begin);

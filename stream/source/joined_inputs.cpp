@@ -92,7 +92,7 @@ std::optional<Box<3>> JoinedInputs::find_world_extent() const {
 
 bool JoinedInputs::leaves_out() const {
   return options_.filter.active() || options_.thinning || options_.reader.resolution > 0 ||
-         options_.reader.salvage;
+         options_.reader.salvage || options_.reader.skip_invalid;
 }
 
 std::optional<std::uint64_t> JoinedInputs::count() const {

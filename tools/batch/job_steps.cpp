@@ -267,7 +267,14 @@ bool JobPlanner::takes_option(const Job& job, const OutputKind& kind, bool of_po
   const std::string& subcommand = kind.subcommand;
   if (name == kClip) return of_points && makes_raster(job);
   if (!has_option(subcommand, name)) return false;
-  if (name == "force-crs" && kind.is_lonlat) return true;
+  const bool clips_pixels = subcommand == "dem" && job.options.contains("clip-pixels");
+  if (name == "force-crs" && (kind.is_lonlat || clips_pixels)) return true;
+  if (name == "clip" || name == "clip-buffer" || name == "clip-outside") {
+    if (clips_pixels) return true;
+    const bool clips_points =
+        !job.options.contains("clip-pixels") || job.options.contains("clip-simplices");
+    return of_points && clips_points;
+  }
   if (subcommand == "dem") {
     const std::string products = products_of(kind, job);
     if (name == "product") return kind.arguments.empty();

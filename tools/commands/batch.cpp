@@ -161,7 +161,7 @@ class Batch {
 
   int run() {
     const auto start = Clock::now();
-    check_figures_file(options_.report, "", "the outputs");
+    check_figures_file(options_.report, options_.sources, "", "the outputs");
     distributed::forget_launch();  // each job is a process on its own
     prepare();
     progress_.begin("batch", "jobs");

@@ -142,7 +142,9 @@ std::string text_report(const Outcome& outcome, const CheckCommandOptions& optio
 
 int run(const CheckCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_figures_file(options.report, options.mesh, "the mesh");
+  std::vector<std::string> inputs = options.points;
+  inputs.push_back(options.mesh);
+  check_figures_file(options.report, inputs, "-", "the report");
   if (options.points.empty()) {
     refuse_given(*options.app, kInputOptionNames, "without --points");
   }

@@ -266,7 +266,7 @@ void check_axes(std::string_view option, const std::vector<double>& values) {
 
 int run(const ConvertCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_figures_file(options.report, options.output.path, "the output");
+  check_figures_file(options.report, options.inputs, options.output.path, "the output");
   check_axes("--scale", options.scale);
   check_axes("--offset", options.offset);
   if (!options.sorted) {

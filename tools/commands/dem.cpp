@@ -48,6 +48,9 @@ std::string why_empty(const DemCommandOptions& options, const DemReport& raster)
         "or --compute-edges",
         raster.columns, raster.rows, raster.bands.front());
   }
+  if (options.input.clips_product) {
+    return fmt::format("none with its centre in a triangle lies where {} says", options.input.clip);
+  }
   if (options.bounds.empty() && options.like.empty()) {
     return fmt::format(
         "pixels of {} are so large that none has its centre in a triangle of the points; give a "
@@ -90,9 +93,11 @@ void say(const DemCommandOptions& options, const Report& report, const DemReport
     // Tiles may overlap.
     const std::uint64_t beside =
         report.mesh.points - std::min(report.mesh.points, raster.points_in_pixels);
-    progress.say(fmt::format("{} points in {} pixels{}", raster.points_in_pixels,
-                             raster.pixels_with_points,
-                             beside > 0 ? fmt::format(", {} beside the raster", beside) : ""));
+    progress.say(
+        fmt::format("{} points in {} pixels{}", raster.points_in_pixels, raster.pixels_with_points,
+                    beside > 0 ? fmt::format(", {} beside the raster{}", beside,
+                                             options.input.clips_product ? " or clipped" : "")
+                               : ""));
   }
   if (options.fill_voids) {
     progress.say(fmt::format("{} pixels without points have the height of a triangle",

@@ -130,7 +130,7 @@ Written write_grid(const GenerateCommandOptions& options, const std::string& for
 int run(const GenerateCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_options(options);
-  check_figures_file(options.report, options.output.path, "the points");
+  check_figures_file(options.report, {}, options.output.path, "the points");
   const bool is_grid = !options.grid.empty();
   const std::string format = is_grid ? options.output.format : format_name_of(options.output);
   check_las_version(options.output,

@@ -409,7 +409,7 @@ void check_point_options(const std::vector<std::string>& paths, const InfoOption
 
 int run(const InfoOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_figures_file(options.report, "", "the text");
+  check_figures_file(options.report, options.files, "-", "the report");
   ProgressLine progress = make_progress(options.report);
   const Context context(context_options(options.memory, 0, progress));
   const std::vector<std::string> paths = expand_inputs(options.files, context);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
 
 #include "formats/disk/output_check.h"
 #include "src/distributed/ranks.h"
@@ -21,7 +23,8 @@ namespace {
 /// Throws UsageError if a file of `option` would go to the same place as `what`.
 void check_place(const std::string& path, const std::string& other, std::string_view what,
                  std::string_view option) {
-  if (path.empty() || path != other) return;
+  std::error_code unknown;  // which is no file yet
+  if (path.empty() || (path != other && !std::filesystem::equivalent(path, other, unknown))) return;
   throw UsageError(fmt::format("{} and {} cannot go to the same place: {}", what, option, path));
 }
 
@@ -34,13 +37,16 @@ void check_statistics_file(const TriangulationOptions& options, const std::strin
   }
   check_place(options.tasks_path, output, product, "--tasks");
   check_place(options.tasks_path, options.report.stats_path, "--stats", "--tasks");
-  check_figures_file(options.report, output, product);
+  check_figures_file(options.report, options.inputs, output, product);
   if (!options.tasks_path.empty()) check_can_create(options.tasks_path);
 }
 
-void check_figures_file(const ReportOptions& options, const std::string& output,
-                        std::string_view product) {
+void check_figures_file(const ReportOptions& options, const std::vector<std::string>& inputs,
+                        const std::string& output, std::string_view product) {
   check_place(options.stats_path, output, product, "--stats");
+  for (const std::string& input : inputs) {
+    if (input != "-") check_place(options.stats_path, input, "an input", "--stats");
+  }
   if (!options.stats_path.empty() && is_first_rank()) check_can_create(options.stats_path);
 }
 

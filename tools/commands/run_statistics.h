@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/bytes/json.h"
 #include "tools/options/triangulation_options.h"
@@ -16,10 +17,10 @@
 
 namespace spillway::command {
 
-/// Throws UsageError if --stats would go where the output goes, which messages call `product`, and
-/// Failure if its file cannot be made.
-void check_figures_file(const ReportOptions& options, const std::string& output,
-                        std::string_view product);
+/// Throws UsageError if --stats would go where an input is, or where the output goes, which messages
+/// call `product`, and Failure if its file cannot be made.
+void check_figures_file(const ReportOptions& options, const std::vector<std::string>& inputs,
+                        const std::string& output, std::string_view product);
 
 /// Writes the file of --stats, if it is asked for: `figures`, behind what all have in common, the
 /// version, and before what they end with, the memory and the seconds since `start`.

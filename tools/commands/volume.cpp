@@ -145,7 +145,7 @@ void check(const VolumeCommandOptions& options) {
 int run(const VolumeCommandOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check(options);
-  check_statistics_file(options, "", "the volumes");
+  check_statistics_file(options, "-", "the volumes");
   ProgressLine progress = make_progress(options.report);
   const Context context = terrain_context(options, progress);
   const Measured measured = measure(options, context, progress);

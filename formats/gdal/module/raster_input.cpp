@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -16,8 +18,19 @@
 namespace spillway::formats {
 namespace {
 
-/// What GDAL keeps of blocks that have been read, in bytes: windows come block by block.
-constexpr GIntBig kBlockCache = GIntBig{16} << 20;
+/// The least that GDAL keeps of blocks that have been read, in bytes: windows come block by block.
+constexpr GIntBig kLeastCache = GIntBig{16} << 20;
+/// The most that a block of all bands may take.
+constexpr GIntBig kLargestBlock = GIntBig{256} << 20;
+
+/// Keeps the block of each band that is being read. What is kept for other rasters stays so.
+void keep_blocks(GIntBig bytes) {
+  static std::mutex mutex;
+  static GIntBig most = kLeastCache;
+  const std::lock_guard lock(mutex);
+  most = std::max(most, 2 * bytes);
+  GDALSetCacheMax64(most);
+}
 
 GDALDatasetUniquePtr open_file(const std::string& path) {
   forget_gdal_errors();
@@ -35,7 +48,6 @@ bool is_of_colours(GDALColorInterp meaning) {
 class OpenedRaster : public RasterSource {
  public:
   explicit OpenedRaster(const std::string& path) : path_(path), file_(open_file(path)) {
-    GDALSetCacheMax64(kBlockCache);
     const int bands = file_->GetRasterCount();
     if (bands == 0) {
       throw BadInput(path,
@@ -62,6 +74,19 @@ class OpenedRaster : public RasterSource {
     int columns = 0;
     int rows = 0;
     first.GetBlockSize(&columns, &rows);
+    GIntBig bytes = 0;
+    for (int b = 1; b <= bands; ++b) {
+      bytes += GDALGetDataTypeSizeBytes(file_->GetRasterBand(b)->GetRasterDataType());
+    }
+    bytes *= GIntBig{columns} * rows;
+    if (bytes > kLargestBlock) {
+      throw Failure(
+          fmt::format("{}: the raster is stored in blocks of {} x {} pixels, which take {} "
+                      "MiB each; gdal_translate -co TILED=YES makes smaller ones",
+                      path, columns, rows, bytes >> 20),
+          ErrorCode::kTooLarge, {.file = path});
+    }
+    keep_blocks(bytes);
     facts_.block_columns = static_cast<std::uint32_t>(columns);
     facts_.block_rows = static_cast<std::uint32_t>(rows);
     facts_.is_picture = is_of_colours(first.GetColorInterpretation());

@@ -15,6 +15,7 @@ namespace spillway::formats {
 namespace {
 
 constexpr std::size_t kLongestHeader = std::size_t{1} << 16;
+constexpr std::size_t kMostFields = 256;
 constexpr std::size_t kLongestPoint = std::size_t{1} << 20;  // bytes
 
 /// The type of a letter of TYPE and a number of SIZE.
@@ -138,6 +139,9 @@ class HeaderLines {
   /// Puts together what the entries say.
   void complete() {
     if (names_.empty()) fail("no FIELDS are named");
+    if (names_.size() > kMostFields) {
+      fail(fmt::format("there are {} FIELDS; at most {} are read", names_.size(), kMostFields));
+    }
     if (counts_.empty()) counts_.assign(names_.size(), 1);
     for (const auto& [entry, count] :
          {std::pair("SIZE", sizes_.size()), std::pair("TYPE", types_.size()),

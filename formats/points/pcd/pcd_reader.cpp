@@ -105,6 +105,21 @@ class TextRows : public RowSource {
   std::uint64_t next_ = 0;  // number of the point
 };
 
+/// How many zeros follow a file's points, which end at that byte: some writers fill up the last page
+/// of memory. 0 if something else follows, or more than such a page.
+std::uint64_t padding_behind(InputBytes& source, std::uint64_t end) {
+  constexpr std::uint64_t kLargestPage = std::uint64_t{64} << 10;
+  const std::uint64_t size = source.size().value_or(0);
+  if (size <= end || size - end > kLargestPage || !source.seekable()) return 0;
+  const std::uint64_t place = source.position();
+  std::vector<std::byte> bytes(size - end);
+  source.seek(end);
+  const std::size_t got = source.read(bytes);
+  source.seek(place);
+  const bool are_zero = std::ranges::all_of(bytes, [](std::byte b) { return b == std::byte{0}; });
+  return got == bytes.size() && are_zero ? got : 0;
+}
+
 /// Points that are compressed field by field: first all of the first field, then all of the next.
 /// Each field is read by a reader of its own.
 class CompressedRows : public RowSource {
@@ -159,7 +174,7 @@ class CompressedRows : public RowSource {
     if (!readers_.empty() && !readers_.back().at_end()) {
       fail("the compressed points go on after all that the header says; the file is corrupt");
     }
-    if (end_ < *source_.size()) {
+    if (end_ + padding_behind(source_, end_) < *source_.size()) {
       fail(fmt::format("the file goes on after its compressed points, at byte {}", end_));
     }
   }
@@ -225,6 +240,10 @@ std::unique_ptr<PointReader> open_pcd_points(std::unique_ptr<InputBytes> source,
   }
   file.skip_invalid = skip_invalid;
   file.has_fixed_size = header.encoding == PcdEncoding::kBinary;
+  if (file.has_fixed_size && header.points < (std::uint64_t{1} << 40)) {
+    const std::uint64_t end = source->position() + header.points * file.row.size();
+    file.behind = padding_behind(*source, end);
+  }
   if (header.encoding == PcdEncoding::kAscii) {
     file.rows = std::make_unique<TextRows>(*source, std::move(header));
   } else if (header.encoding == PcdEncoding::kCompressed) {

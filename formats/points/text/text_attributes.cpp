@@ -14,6 +14,7 @@ namespace spillway::formats {
 TextAttributes::TextAttributes(const TextColumns& columns, std::string_view first_row,
                                const std::vector<std::string>& names)
     : separator_(columns.separator()), decimal_commas_(columns.decimal_commas()) {
+  if (separator_ == Separator::kNone) return;
   const std::vector<std::string_view> fields = text_fields(first_row, separator_);
   std::vector<Attribute> attributes;
   for (std::size_t i = 0; i < fields.size(); ++i) {

@@ -166,21 +166,6 @@ class Fields {
 };
 
 template <Separator S>
-bool ends_in_quotes_as(std::string_view line) {
-  Fields<S> walk(line);
-  while (!walk.at_end() && !is_comment(walk.rest())) {
-    const std::string_view rest = walk.rest();
-    if (rest.front() == '"' &&
-        closing_quote(rest.data() + 1, rest.data() + rest.size()) == rest.data() + rest.size()) {
-      return true;
-    }
-    std::string_view field;
-    if (!walk.text(field)) return false;
-  }
-  return false;
-}
-
-template <Separator S>
 void put_fields(std::string_view line, bool comments, std::vector<std::string_view>& fields) {
   Fields<S> walk(line);
   while (!walk.at_end() && !(comments && is_comment(walk.rest()))) {
@@ -217,10 +202,33 @@ void put_fields(std::string_view line, Separator separator, bool comments,
   put_fields<Separator::kBlanks>(line, comments, fields);
 }
 
+/// The bytes of a character of UTF-8 that begins so; 0 if none does.
+std::size_t length_of_character(unsigned char first) {
+  if (first < 0x80) return 1;
+  if (first < 0xc2 || first > 0xf4) return 0;
+  return first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+}
+
+/// The byte where that character of a line begins, or the line's end. In a line that is no UTF-8,
+/// bytes are characters.
+std::size_t byte_of_character(std::string_view line, std::size_t number) {
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < number && at < line.size(); ++c) {
+    const std::size_t length = length_of_character(static_cast<unsigned char>(line[at]));
+    const std::string_view rest = line.substr(at + 1, length == 0 ? 0 : length - 1);
+    const bool is_whole = rest.size() + 1 == length && std::ranges::all_of(rest, [](char byte) {
+                            return (static_cast<unsigned char>(byte) & 0xc0U) == 0x80;
+                          });
+    if (!is_whole) return std::min(number, line.size());
+    at += length;
+  }
+  return at;
+}
+
 /// The characters of a line that are there, without blanks around them.
 std::string_view characters_of(std::string_view line, const std::array<std::size_t, 2>& range) {
-  if (range[0] >= line.size()) return {};
-  line = line.substr(range[0], range[1] - range[0]);
+  const std::size_t begin = byte_of_character(line, range[0]);
+  line = line.substr(begin, byte_of_character(line, range[1]) - begin);
   line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   return line.substr(0, line.find_last_not_of(" \t") + 1);
 }
@@ -268,20 +276,45 @@ std::string without_doubled_quotes(std::string_view field) {
   return text;
 }
 
-bool ends_in_quotes(std::string_view line, Separator separator) {
-  if (line.find('"') == line.npos) return false;
-  switch (separator) {
-    case Separator::kTab:
-      return ends_in_quotes_as<Separator::kTab>(line);
-    case Separator::kComma:
-      return ends_in_quotes_as<Separator::kComma>(line);
-    case Separator::kSemicolon:
-      return ends_in_quotes_as<Separator::kSemicolon>(line);
-    case Separator::kNone:
-    case Separator::kBlanks:
-      break;
+bool QuoteScan::goes_on(std::string_view line) {
+  if (separator_ == Separator::kNone || separator_ == Separator::kBlanks) return false;
+  const char separator = static_cast<char>(separator_);
+  const auto is_blank = [&](char c) { return c == ' ' || (c == '\t' && separator != '\t'); };
+  if (place_ == Place::kQuoted) is_of_lines_ = true;
+  for (; at_ < line.size(); ++at_) {
+    const char c = line[at_];
+    switch (place_) {
+      case Place::kFieldBegin:
+        if (is_blank(c) || c == separator) continue;
+        is_of_lines_ = false;
+        place_ = c == '"'                       ? Place::kQuoted
+                 : is_comment(line.substr(at_)) ? Place::kComment
+                                                : Place::kPlain;
+        break;
+      case Place::kPlain:
+        if (c == separator) place_ = Place::kFieldBegin;
+        break;
+      case Place::kQuoted:
+        if (c != '"') break;
+        if (at_ + 1 < line.size() && line[at_ + 1] == '"') {
+          ++at_;
+        } else {
+          place_ = Place::kBehindQuotes;
+        }
+        break;
+      case Place::kBehindQuotes:
+        if (c == separator) {
+          place_ = Place::kFieldBegin;
+        } else if (!is_blank(c)) {
+          is_broken_ = is_broken_ || is_of_lines_;
+          place_ = Place::kPlain;
+        }
+        break;
+      case Place::kComment:
+        return false;
+    }
   }
-  return false;
+  return place_ == Place::kQuoted;
 }
 
 std::vector<std::string_view> text_fields(std::string_view line, Separator separator) {

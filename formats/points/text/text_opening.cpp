@@ -128,9 +128,9 @@ class Opening {
 
   /// Makes the line longer as long as it ends within quotes.
   void complete_line() {
-    while (lines_.has_quotes() && ends_in_quotes(line_, likely_separator_of(line_))) {
-      if (!lines_.extend(line_)) fail("has a field in quotes that does not end; close it");
-    }
+    if (!lines_.has_quotes() || !said_.characters.empty()) return;
+    const std::string fault = complete_in_quotes(lines_, line_, likely_separator_of(line_));
+    if (!fault.empty()) fail(fault);
   }
 
   /// Sets line_ to the next one that is no comment; false at the end. Of comments before it the
@@ -580,6 +580,24 @@ class Opening {
 
 TextOpening read_text_opening(LineReader& lines, const std::string& name, const TextRows& rows) {
   return Opening(lines, name, rows).read();
+}
+
+std::string complete_in_quotes(LineReader& lines, std::string_view& line, Separator separator) {
+  QuoteScan scan(separator);
+  while (scan.goes_on(line)) {
+    if (line.size() > QuoteScan::kLongest) {
+      return "has a field in quotes that goes on for more than 64 KiB; close it, or remove its "
+             "quote";
+    }
+    if (!lines.extend(line)) {
+      return "has a field in quotes that does not end; close it, or get a complete copy";
+    }
+  }
+  if (!scan.is_broken()) return "";
+  return fmt::format(
+      "has a field in quotes that goes on in the next lines, where more follows its "
+      "last quote: {}; close it in its line, write two quotes for one, or separate",
+      quoted(line));
 }
 
 std::optional<std::uint64_t> point_count_of_line(std::string_view line) {

@@ -97,22 +97,17 @@ class TextReader : public PointReader {
 
   /// Makes the line longer as long as it ends within quotes.
   void complete_line() {
-    while (ends_in_quotes(line_, columns_.separator())) {
-      if (!lines_.numbered()) {
-        fail(
-            fmt::format("{} has a field in quotes that goes on in the next line, which none of the "
-                        "first lines has: put the file through a pipe, as cat FILE | spillway "
-                        "COMMAND -, so that it is read from front to back",
-                        lines_.line_name()),
-            lines_.place());
-      }
-      if (!lines_.extend(line_)) {
-        fail(fmt::format("{} has a field in quotes that does not end; close it, or get a complete "
-                         "copy: {}",
-                         lines_.line_name(), quoted(line_)),
-             lines_.place());
-      }
+    const Separator separator = columns_.separator();
+    if (!QuoteScan(separator).goes_on(line_)) return;
+    if (!lines_.numbered()) {
+      fail(fmt::format("{} has a field in quotes that goes on in the next line, which none of the "
+                       "first lines has: put the file through a pipe, as cat FILE | spillway "
+                       "COMMAND -, so that it is read from front to back",
+                       lines_.line_name()),
+           lines_.place());
     }
+    const std::string fault = complete_in_quotes(lines_, line_, separator);
+    if (!fault.empty()) fail(fmt::format("{} {}", lines_.line_name(), fault), lines_.place());
   }
 
   /// Calls `look` with whole lines after the first row, as far as they have been read, until it
@@ -132,7 +127,7 @@ class TextReader : public PointReader {
   [[nodiscard]] bool has_lines_in_quotes() const {
     if (!lines_.has_quotes()) return false;
     return line_.find('\n') != line_.npos || look_at_lines([&](std::string_view line) {
-             return ends_in_quotes(line, columns_.separator());
+             return QuoteScan(columns_.separator()).goes_on(line);
            });
   }
 

@@ -85,8 +85,7 @@ void MeshFile::check_tiles() const {
   if (context().options().executor != nullptr) {
     throw InvalidArgument(
         "tiles of a mesh, and one that is clipped, are written by one process: let several write "
-        "one "
-        "mesh, and convert that");
+        "one mesh, and convert that");
   }
   if (target_.path != "-") check_can_create(target_.path);
 }
@@ -185,8 +184,8 @@ void MeshFile::finalize(RunWatch& watch, Report& report, OtherShares& /*others*/
 }
 
 void MeshFile::write_tiles(RunWatch& watch, Report& report) {
-  MeshTiles::Written written = tiles_->write(*target_.format, context(), watch);
-  if (written.paths.empty() && !options_.clip.polygons.empty()) {
+  MeshTiles::Written written = tiles_->write(*target_.format, is_clipped(), context(), watch);
+  if (written.paths.empty() && is_clipped()) {
     throw Failure(fmt::format("none of the {} lies where {} says, so nothing is written",
                               simplices_, options_.clip.polygons),
                   ErrorCode::kInvalidArgument);
@@ -195,6 +194,12 @@ void MeshFile::write_tiles(RunWatch& watch, Report& report) {
   report.output_files = written.paths.size();
   report.outside_tiles = tiles_->outside();
   report.outside_vertices = report.mesh.vertices - tiles_->vertices();
+  if (is_clipped()) {
+    report.mesh.vertices = written.totals.vertices;
+    report.mesh.simplices = written.totals.simplices;
+    report.mesh.hull_facets = written.totals.hull_facets;
+    report.mesh.canonical_hash = written.totals.canonical_hash;
+  }
   report.other_files = tiling_->others_than(std::move(written.paths));
   tiles_.reset();
 }

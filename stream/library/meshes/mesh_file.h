@@ -61,6 +61,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   [[nodiscard]] AttributeChoice asked_attributes(bool triangulated) const;
 
   void check_tiles() const;
+  [[nodiscard]] bool is_clipped() const { return !options_.clip.polygons.empty(); }
   void write_tiles(RunWatch& watch, Report& report);
 
   MeshTarget target_;

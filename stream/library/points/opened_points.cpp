@@ -138,6 +138,11 @@ std::vector<std::array<std::size_t, 2>> characters_of(
           fmt::format("there are no characters {} to {}: they are counted from 1 to {}", first,
                       last, kMostColumns));
     }
+    for (const auto& [begin, end] : characters) {
+      if (static_cast<std::size_t>(first) > end || static_cast<std::size_t>(last) <= begin)
+        continue;
+      throw InvalidArgument(fmt::format("characters {} to {} are in two columns", first, last));
+    }
     characters.push_back({static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last)});
   }
   return characters;

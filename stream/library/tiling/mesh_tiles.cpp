@@ -1,5 +1,7 @@
 #include "stream/library/tiling/mesh_tiles.h"
 
+#include <tuple>
+
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_stream_writer.h"
 #include "formats/meshes/vector/vector_format.h"
@@ -17,13 +19,13 @@ MeshTiles::MeshTiles(const MeshStreamHeader& header, MeshTiling& tiling, std::ui
       records_("tiles", memory, scratch),
       divider_(header, tiling, records_) {}
 
-std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
-                                    const MeshFormat& format, const Context& context,
-                                    RunWatch& watch) {
+void MeshTiles::write_tile(std::size_t tile, const MeshFormat& format, const Context& context,
+                           RunWatch& watch, Written& written) {
+  const std::string& path = written.paths.emplace_back(tiling_.path(tile));
   const TileCounts& counts = divider_.counts(tile);
   TileMesh mesh(header_, counts, records_, tile);
-  MeshTotals totals = mesh.totals();
-  if (format.has_totals) {
+  MeshTotals& totals = written.totals = mesh.totals();
+  if (format.has_totals || counts_) {
     TileMesh same(header_, counts, records_, tile);
     CheckerOptions how;
     how.threads = context.threads();
@@ -35,16 +37,16 @@ std::uint64_t MeshTiles::write_tile(std::size_t tile, const std::string& path,
   const auto writer = open_mesh_stream_writer(disk(), path, format, mesh.header(), scratch_);
   pass_mesh(mesh, header_.attributes, *writer, watch, context.threads());
   writer->finish(totals);
-  return writer->bytes_written();
+  written.bytes += writer->bytes_written();
 }
 
-MeshTiles::Written MeshTiles::write(const MeshFormat& format, const Context& context,
+MeshTiles::Written MeshTiles::write(const MeshFormat& format, bool counted, const Context& context,
                                     RunWatch& watch) {
+  counts_ = counted;
   const std::vector<std::size_t> tiles = records_.tiles();
-  Written written{.bytes = 0, .paths = tiling_.paths(tiles)};
-  for (std::size_t t = 0; t < tiles.size(); ++t) {
-    written.bytes += write_tile(tiles[t], written.paths[t], format, context, watch);
-  }
+  std::ignore = tiling_.paths(tiles);  // which are different ones
+  Written written;
+  for (const std::size_t tile : tiles) write_tile(tile, format, context, watch, written);
   return written;
 }
 

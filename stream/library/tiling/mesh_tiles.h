@@ -29,9 +29,11 @@ class MeshTiles {
   struct Written {
     std::uint64_t bytes = 0;
     std::vector<std::string> paths{};
+    MeshTotals totals{};  ///< of the last one
   };
-  /// Writes them all. Files that are complete stay if a later one fails.
-  Written write(const MeshFormat& format, const Context& context, RunWatch& watch);
+  /// Writes them all. Files that are complete stay if a later one fails. `counted`: their totals are
+  /// wanted, whether the format has them or not.
+  Written write(const MeshFormat& format, bool counted, const Context& context, RunWatch& watch);
 
   /// Simplices that are in no tile.
   [[nodiscard]] std::uint64_t outside() const { return divider_.outside(); }
@@ -40,14 +42,15 @@ class MeshTiles {
   [[nodiscard]] std::uint64_t spilled_bytes() const { return records_.spilled_bytes(); }
 
  private:
-  std::uint64_t write_tile(std::size_t tile, const std::string& path, const MeshFormat& format,
-                           const Context& context, RunWatch& watch);
+  void write_tile(std::size_t tile, const MeshFormat& format, const Context& context,
+                  RunWatch& watch, Written& written);
 
   const MeshStreamHeader header_;
   MeshTiling& tiling_;
   ScratchFolder& scratch_;
   RecordsByTile records_;
   MeshDivider divider_;
+  bool counts_ = false;  ///< totals are wanted
 };
 
 }  // namespace spillway::stream

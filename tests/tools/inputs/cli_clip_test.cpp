@@ -278,9 +278,10 @@ TEST_F(PointsOnAMap, MeshesAreClippedToWholeSimplicesByTheirCentroids) {
                   " 2> said.txt");
     EXPECT_THAT(work_.read("said.txt"), HasSubstr("triangles clipped, and "));
     const auto stats = nlohmann::json::parse(work_.read("s.json"));
-    EXPECT_EQ(
-        nlohmann::json::parse(work_.succeed("spillway info -q --json part.spm"))["simplices"],
-        stats["simplices"].get<std::uint64_t>() - stats["outside_tiles"].get<std::uint64_t>());
+    const auto info = nlohmann::json::parse(work_.succeed("spillway info -q --json part.spm"));
+    for (const char* key : {"vertices", "simplices", "hull_facets", "canonical_hash"}) {
+      EXPECT_EQ(stats[key], info[key]) << key;
+    }
     return stats["outside_tiles"].get<std::uint64_t>();
   };
   const std::uint64_t outside = simplices("--clip area.csv");
@@ -318,6 +319,12 @@ TEST_F(PointsOnAMap, AClippedMeshOfNothingAndWrongClipsAreErrors) {
   EXPECT_THAT(error_of("dem in.las -o o.tif --resolution 5 --clip-pixels", 2),
               HasSubstr("no effect without --clip"));
   EXPECT_THAT(error_of("convert whole.spm -o o.spm --clip none.csv", 1), HasSubstr("none.csv"));
+  if (build_lacks("GDAL")) return;
+  EXPECT_THAT(work_
+                  .run("spillway dem in.las -o far.tif --resolution 5 --clip far.csv --clip-pixels "
+                       "--force-crs")
+                  .err,
+              HasSubstr("none with its centre in a triangle lies where far.csv says"));
 }
 
 TEST_F(PointsOnAMap, RastersAreClippedByPixelsAsByGdalwarp) {
@@ -344,7 +351,14 @@ TEST_F(PointsOnAMap, RastersAreClippedByPixelsAsByGdalwarp) {
     EXPECT_EQ(std::max(inside[i][2], outside[i][2]), whole[i][2]);
     EXPECT_TRUE(whole[i][2] == -9999 || (inside[i][2] == -9999) != (outside[i][2] == -9999));
   }
+  // Of a batch, the mesh is that of all points.
   work_.succeed("spillway triangulate -q in.las -o whole.spm");
+  work_.succeed(
+      "spillway batch -q in.las --to spm,dem.tif --resolution 2 --bounds "
+      "500000,4100000,500300,4100300 --compress none --clip area.csv --clip-pixels --force-crs "
+      "--output-dir jobs");
+  EXPECT_EQ(hash_of(work_, "jobs/in.spm"), hash_of(work_, "whole.spm"));
+  EXPECT_EQ(pixels("jobs/in.dem.tif"), pixels("clipped.tif"));
   work_.succeed(
       "spillway dem -q whole.spm --resolution 2 --compress none --bounds "
       "500000,4100000,500300,4100300 --clip area.csv --clip-pixels --force-crs -o mesh.tif");

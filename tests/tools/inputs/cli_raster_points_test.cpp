@@ -95,6 +95,15 @@ TEST(RasterPoints, WhatIsNoRasterOfHeightsIsAnError) {
   EXPECT_THAT(error_of("cut.tif"), HasSubstr("cut.tif"));
 }
 
+TEST(RasterPoints, InBlocksThatTakeTooMuchMemoryAreRefused) {
+  const Workspace work;
+  work.succeed(
+      "gdal_create -q -outsize 9000 9000 -ot Float32 -a_ullr 0 9000 9000 0 -co SPARSE_OK=TRUE "
+      "-co TILED=YES -co BLOCKXSIZE=9008 -co BLOCKYSIZE=9008 big.tif");
+  EXPECT_THAT(work.run("spillway info big.tif").err,
+              AllOf(HasSubstr("blocks of 9008 x 9008 pixels"), HasSubstr("TILED=YES")));
+}
+
 TEST(RasterPoints, OfAFolderAreNotTaken) {
   const Workspace work;
   work.succeed("mkdir in && spillway generate uniform -q -n 100 -o in/a.npy");

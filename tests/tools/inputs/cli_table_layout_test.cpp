@@ -30,6 +30,8 @@ TEST(FixedColumns, AreChosenByTheirCharacters) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("line 2, characters 13 to 20 are not a number"));
   EXPECT_EQ(work.run("spillway info fixed.txt --columns 6-12,20-13").exit_code, 2);
+  EXPECT_THAT(work.run("spillway info fixed.txt --columns 6-12,10-20").err,
+              HasSubstr("characters 10 to 20 are in two columns"));
   EXPECT_EQ(work.run("spillway info fixed.txt --columns 6-12,13-20 --separator tab").exit_code, 2);
 }
 
@@ -52,6 +54,22 @@ TEST(Info, TellsHowATableWasUnderstood) {
             Json::parse(R"(["1-7", "8-14"])"));
   work.succeed("spillway convert -q a.csv -o a.las");
   EXPECT_EQ(Json::parse(work.succeed("spillway info -q --json a.las")).contains("table"), false);
+}
+
+/// The number of points is not what the header says then, and must not be promised.
+TEST(SkipInvalid, OfFilesWhoseHeadersCountThem) {
+  const Workspace work;
+  work.write(
+      "a.pcd",
+      "# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 3\nDATA ascii\n1 2 3\nnan nan "
+      "nan\n4 5 6\n");
+  for (const char* output : {"a.spp", "a.npy", "a.ply"}) {
+    work.succeed(std::string("spillway convert -q --skip-invalid a.pcd -o ") + output);
+    EXPECT_EQ(
+        work.succeed(std::string("spillway convert -q ") + output + " -o - --output-format text"),
+        "1 2 3\n4 5 6\n")
+        << output;
+  }
 }
 
 TEST(Info, CountsTheFlagsOfLas) {

@@ -75,7 +75,8 @@ TEST_F(Figures, AreAnOptionOfEverySubcommandThatWorks) {
 TEST_F(Figures, CannotGoWhereTheOutputGoes) {
   for (const char* const arguments :
        {"convert a.las -o s.csv --stats s.csv", "generate uniform -n 9 -o s.npy --stats s.npy",
-        "check a.spm --stats a.spm"}) {
+        "check a.spm --stats a.spm", "convert a.las -o b.las --stats a.las", "info a.las --stats -",
+        "triangulate a.las -o b.ply --stats ./a.las"}) {
     const Result result = work_.run(std::string("spillway ") + arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments;
     EXPECT_THAT(result.err, HasSubstr("cannot go to the same place"));

@@ -204,6 +204,9 @@ TEST(PcdPoints, AWrongHeaderIsAnErrorWithItsLine) {
   EXPECT_THAT(error("FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA zip\n"), HasSubstr("DATA is"));
   EXPECT_THAT(error("FIELDS x y\nPOINT 1\nDATA ascii\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("\"POINT\" is no entry")));
+  std::string many = "FIELDS x y";
+  for (int i = 0; i < 300; ++i) many += fmt::format(" f{}", i);
+  EXPECT_THAT(error(many + "\nPOINTS 1\nDATA ascii\n"), HasSubstr("at most 256"));
   EXPECT_THAT(error("FIELDS x y\nSIZE 4 4\n"), HasSubstr("the file ends within its header"));
   EXPECT_THAT(error("FIELDS x y\nSIZE -4 4\n"), HasSubstr("line 3"));
 }
@@ -229,6 +232,18 @@ TEST(PcdPoints, CutOffAnywhereAreAnError) {
       EXPECT_NE(error_of([&] { read_content("a.pcd", whole.substr(0, size)); }), "") << size;
     }
     EXPECT_THAT(error_of([&] { read_content("a.pcd", whole + "x"); }), HasSubstr("goes on"));
+  }
+}
+
+/// Some writers fill up the last page of memory.
+TEST(PcdPoints, ZerosMayFollowThem) {
+  const Cloud cloud = cloud_of(40);
+  for (const std::string& whole :
+       {header_of(kPlain, 40, "binary") + cloud.rows,
+        header_of(kPlain, 40, "binary_compressed") + compressed(cloud.columns)}) {
+    EXPECT_EQ(read_content("a.pcd", whole + std::string(4000, '\0')).points.size(), 40U);
+    EXPECT_THAT(error_of([&] { read_content("a.pcd", whole + std::string(70'000, '\0')); }),
+                HasSubstr("goes on"));
   }
 }
 

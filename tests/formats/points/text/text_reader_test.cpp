@@ -219,6 +219,25 @@ TEST(TextReader, AFieldInQuotesThatDoesNotEndIsAnError) {
       << "within a field they mean nothing";
 }
 
+/// A quote that was none must not swallow the rows up to the next one.
+TEST(TextReader, RowsAreNotSwallowedByAQuoteThatWasNone) {
+  for (const char* separator : {",", ";", "\t"}) {
+    std::string rows = "1,2,3,\"5 pipe\n4,5,6,\"6 pipe\n7,8,9,ok\n";
+    for (char& c : rows) c = c == ',' ? separator[0] : c;
+    EXPECT_THAT(error_of([&] { points_of(rows); }),
+                AllOf(HasSubstr("line 1"), HasSubstr("more follows its last quote")));
+    EXPECT_THAT(error_of([&] { points_of(rows.substr(rows.size() - 9) + rows); }),
+                HasSubstr("line 2"));
+  }
+  const std::string long_field = "1,2,3,\"" + std::string(200'000, '\n') + "\"\n";
+  EXPECT_THAT(error_of([&] { points_of(long_field); }),
+              AllOf(HasSubstr("line 1"), HasSubstr("more than 64 KiB")));
+  EXPECT_THAT(error_of([&] { points_of("7,8,9,a\n" + long_field); }), HasSubstr("line 2"));
+  TextLayout layout;
+  layout.characters = {{0, 2}, {2, 4}, {4, 6}};
+  EXPECT_EQ(read_content("a.txt", "1 2 3 ,\"ab\n4 5 6 ,\"c\n", {.text = layout}).points.size(), 2U);
+}
+
 /// Lines in quotes that only come where pieces are read in any order cannot be told from rows.
 TEST(TextReader, LateLinesInQuotesAreAnErrorInAFileAndReadFromAPipe) {
   std::string rows = "x,y,z,t\n";
@@ -259,6 +278,11 @@ TEST(TextReader, ColumnsOfFixedWidth) {
               HasSubstr("line 1"));
   EXPECT_EQ(read("001\n" + rows, {.skip_lines = 1}).points.size(), 2U);
   const AllPoints all = read(rows, {});
+  EXPECT_THAT(read("M\xc3\xbc\xc3\x9f" + rows.substr(3), {}).points, ElementsAre(kFirst, second))
+      << "characters of UTF-8";
+  EXPECT_THAT(read("M\xfc\xdf" + rows.substr(3), {}).points, ElementsAre(kFirst, second))
+      << "and of Latin-1";
+  EXPECT_TRUE(read("000123456 54321    7\n" + rows, {}).header.attributes.empty());
   EXPECT_EQ(all.header.text->separator, "none");
   EXPECT_EQ(all.header.text->characters[1], (std::array<std::size_t, 2>{9, 15}));
 }
