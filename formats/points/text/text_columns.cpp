@@ -278,6 +278,7 @@ std::string without_doubled_quotes(std::string_view field) {
 
 bool QuoteScan::goes_on(std::string_view line) {
   if (separator_ == Separator::kNone || separator_ == Separator::kBlanks) return false;
+  if (at_ == 0 && line.find('"') == line.npos) return false;
   const char separator = static_cast<char>(separator_);
   const auto is_blank = [&](char c) { return c == ' ' || (c == '\t' && separator != '\t'); };
   if (place_ == Place::kQuoted) is_of_lines_ = true;
