@@ -64,7 +64,7 @@ TEST(OptionNames, AreThoseThatThereAre) {
   known.insert(known.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
   // These have an effect on a mesh, or are settings for any work.
   known.insert(known.end(),
-               {"--max-edge", "--threads", "--memory", "--scratch-folder", "--max-tmp", "--stats"});
+               {"--max-edge", "--threads", "--memory", "--scratch-folder", "--max-tmp"});
   EXPECT_THAT(long_names(all), ::testing::UnorderedElementsAreArray(known));
 }
 
