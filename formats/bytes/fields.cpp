@@ -3,6 +3,8 @@
 #include <cctype>
 #include <charconv>
 
+#include "formats/bytes/line_reader.h"
+
 namespace spillway::formats {
 namespace {
 
@@ -42,6 +44,16 @@ std::optional<std::uint64_t> Fields::count() { return parse_count(word()); }
 
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   return parse<std::uint64_t>(text);
+}
+
+bool next_fields(LineReader& lines, Fields& fields) {
+  std::string_view line;
+  while (lines.next(line)) {
+    fields = Fields(line);
+    if (!fields.at_end()) return true;
+    lines.pass_over();
+  }
+  return false;
 }
 
 bool begins_with_word(std::string_view first_bytes, std::string_view word) {

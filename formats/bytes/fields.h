@@ -31,6 +31,11 @@ class Fields {
   std::string_view rest_;
 };
 
+class LineReader;
+
+/// Sets `fields` to those of the next line that is not blank; false at the end.
+bool next_fields(LineReader& lines, Fields& fields);
+
 /// Whether a file's first bytes are this word, and nothing that makes it longer.
 bool begins_with_word(std::string_view first_bytes, std::string_view word);
 

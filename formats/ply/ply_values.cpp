@@ -75,17 +75,7 @@ void PlyTextValues::end_item() {
 }
 
 void PlyTextValues::finish() {
-  if (next_line()) item_.fail_for_excess(place());
-}
-
-bool PlyTextValues::next_line() {
-  std::string_view line;
-  while (lines_.next(line)) {
-    fields_ = Fields(line);
-    if (!fields_.at_end()) return true;
-    lines_.pass_over();
-  }
-  return false;
+  if (next_fields(lines_, fields_)) item_.fail_for_excess(place());
 }
 
 }  // namespace spillway::formats

@@ -96,7 +96,7 @@ class PlyTextValues {
 
   void begin_item(std::string_view element, std::uint64_t number) {
     item_.set(element, number);
-    if (!next_line()) item_.fail_for_end(place());
+    if (!next_fields(lines_, fields_)) item_.fail_for_end(place());
   }
 
   double number(NumberType type);
@@ -113,9 +113,6 @@ class PlyTextValues {
   [[nodiscard]] FilePlace place() const { return at_line(header_lines_ + lines_.number()); }
 
  private:
-  /// Goes to the next line that is not blank; false at the end.
-  bool next_line();
-
   PlyItem item_;
   LineReader lines_;
   Fields fields_{""};

@@ -32,7 +32,7 @@ class TextRows : public RowSource {
   }
 
   void finish() override {
-    if (!next_line()) return;
+    if (!next_fields(lines_, fields_)) return;
     fail(fmt::format("goes on after the {} points that the header says", header_.points));
   }
 
@@ -44,19 +44,8 @@ class TextRows : public RowSource {
     throw BadInput(name_, fmt::format("line {} {}", line, what), at_line(line));
   }
 
-  /// Goes to the next line that is not blank; false at the end.
-  bool next_line() {
-    std::string_view line;
-    while (lines_.next(line)) {
-      fields_ = Fields(line);
-      if (!fields_.at_end()) return true;
-      lines_.pass_over();
-    }
-    return false;
-  }
-
   std::byte* read_row(std::byte* at) {
-    if (!next_line()) {
+    if (!next_fields(lines_, fields_)) {
       fail(fmt::format("is the last one, after {} of {} points; get a complete copy", next_,
                        header_.points));
     }

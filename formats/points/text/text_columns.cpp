@@ -276,48 +276,6 @@ std::string without_doubled_quotes(std::string_view field) {
   return text;
 }
 
-bool QuoteScan::goes_on(std::string_view line) {
-  if (separator_ == Separator::kNone || separator_ == Separator::kBlanks) return false;
-  if (at_ == 0 && line.find('"') == line.npos) return false;
-  const char separator = static_cast<char>(separator_);
-  const auto is_blank = [&](char c) { return c == ' ' || (c == '\t' && separator != '\t'); };
-  if (place_ == Place::kQuoted) is_of_lines_ = true;
-  for (; at_ < line.size(); ++at_) {
-    const char c = line[at_];
-    switch (place_) {
-      case Place::kFieldBegin:
-        if (is_blank(c) || c == separator) continue;
-        is_of_lines_ = false;
-        place_ = c == '"'                       ? Place::kQuoted
-                 : is_comment(line.substr(at_)) ? Place::kComment
-                                                : Place::kPlain;
-        break;
-      case Place::kPlain:
-        if (c == separator) place_ = Place::kFieldBegin;
-        break;
-      case Place::kQuoted:
-        if (c != '"') break;
-        if (at_ + 1 < line.size() && line[at_ + 1] == '"') {
-          ++at_;
-        } else {
-          place_ = Place::kBehindQuotes;
-        }
-        break;
-      case Place::kBehindQuotes:
-        if (c == separator) {
-          place_ = Place::kFieldBegin;
-        } else if (!is_blank(c)) {
-          is_broken_ = is_broken_ || is_of_lines_;
-          place_ = Place::kPlain;
-        }
-        break;
-      case Place::kComment:
-        return false;
-    }
-  }
-  return place_ == Place::kQuoted;
-}
-
 std::vector<std::string_view> text_fields(std::string_view line, Separator separator) {
   std::vector<std::string_view> fields;
   put_text_fields(line, separator, fields);

@@ -42,33 +42,6 @@ std::vector<std::string_view> text_names(std::string_view line, Separator separa
 /// A field as it is meant: two quotes in it are one.
 std::string without_doubled_quotes(std::string_view field);
 
-/// Looks for fields in quotes that go on in the next line. Where blanks separate, or nothing, none
-/// does.
-class QuoteScan {
- public:
-  /// The most bytes of a line that ends so.
-  static constexpr std::size_t kLongest = std::size_t{64} << 10;
-
-  explicit QuoteScan(Separator separator) : separator_(separator) {}
-
-  /// Whether a line ends within quotes. The next call is for the same line with the one that follows
-  /// it: what has been looked at is not looked at again.
-  [[nodiscard]] bool goes_on(std::string_view line);
-
-  /// Whether something else than a separator follows the last quote of a field of several lines: so
-  /// its first quote was none.
-  [[nodiscard]] bool is_broken() const { return is_broken_; }
-
- private:
-  enum class Place { kFieldBegin, kPlain, kQuoted, kBehindQuotes, kComment };
-
-  Separator separator_;
-  Place place_ = Place::kFieldBegin;
-  std::size_t at_ = 0;
-  bool is_of_lines_ = false;  // the last field in quotes
-  bool is_broken_ = false;
-};
-
 /// True for a line without data: blank, or beginning with #, // or %.
 bool is_comment(std::string_view line);
 

@@ -12,6 +12,7 @@
 #include "formats/bytes/fields.h"
 #include "formats/points/text/column_names.h"
 #include "formats/points/text/names_line.h"
+#include "formats/points/text/quoted_lines.h"
 #include "formats/points/text/unnamed_columns.h"
 #include "src/error.h"
 
@@ -580,24 +581,6 @@ class Opening {
 
 TextOpening read_text_opening(LineReader& lines, const std::string& name, const TextRows& rows) {
   return Opening(lines, name, rows).read();
-}
-
-std::string complete_in_quotes(LineReader& lines, std::string_view& line, Separator separator) {
-  QuoteScan scan(separator);
-  while (scan.goes_on(line)) {
-    if (line.size() > QuoteScan::kLongest) {
-      return "has a field in quotes that goes on for more than 64 KiB; close it, or remove its "
-             "quote";
-    }
-    if (!lines.extend(line)) {
-      return "has a field in quotes that does not end; close it, or get a complete copy";
-    }
-  }
-  if (!scan.is_broken()) return "";
-  return fmt::format(
-      "has a field in quotes that goes on in the next lines, where more follows its "
-      "last quote: {}; close it in its line, write two quotes for one, or separate",
-      quoted(line));
 }
 
 std::optional<std::uint64_t> point_count_of_line(std::string_view line) {

@@ -39,10 +39,6 @@ struct TextRows {
 TextOpening read_text_opening(LineReader& lines, const std::string& name,
                               const TextRows& rows = {});
 
-/// Makes a line, which `lines` gave last, longer as long as it ends within quotes. Returns why that
-/// cannot be, to be put behind the line's name; empty if it can.
-std::string complete_in_quotes(LineReader& lines, std::string_view& line, Separator separator);
-
 /// The number of points that a line of PTS with nothing else tells; nothing for any other line.
 std::optional<std::uint64_t> point_count_of_line(std::string_view line);
 

@@ -10,6 +10,7 @@
 
 #include "formats/bytes/line_reader.h"
 #include "formats/points/common/text_layout.h"
+#include "formats/points/text/quoted_lines.h"
 #include "formats/points/text/text_attributes.h"
 #include "formats/points/text/text_columns.h"
 #include "formats/points/text/text_opening.h"
