@@ -121,6 +121,7 @@ class RunHere final : public RunPhases<D> {
       this->walk();
     });
     release_base_case_memory();
+    if (this->setup().torus != nullptr) *this->setup().torus = engine().torus();
     if (const auto& trace = options().asked.trace) trace->end({.tasks = engine().task_sums()});
     return engine().statistics();
   }

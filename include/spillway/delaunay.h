@@ -4,12 +4,14 @@
 #include <spillway/cells.h>
 #include <spillway/error.h>
 #include <spillway/export.h>
+#include <spillway/periodic.h>
 #include <spillway/point_view.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -28,6 +30,8 @@ struct DelaunayOptions {
   /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts (of
   /// some hundred thousand points) and merges of them that have been begun are finished.
   std::stop_token stop{};
+  /// D = 2 and D = 3: the points repeat with this box (see Delaunay). It does change the result.
+  std::optional<PeriodicBox> periodic{};
 };
 
 /// A point that equals an earlier one of the input.

@@ -7,6 +7,7 @@
 #include <spillway/export.h>
 #include <spillway/extent.h>
 #include <spillway/lattice.h>
+#include <spillway/periodic.h>
 #include <spillway/point_view.h>
 #include <spillway/totals.h>
 
@@ -39,6 +40,7 @@ struct MeshHeader {
   /// What vertices carry of the points that they are. The first dimension - 3 are their coordinates
   /// beyond z, a float64 each: x4, x5, x6, or as the points' source calls them.
   std::vector<Attribute> attributes{};
+  std::optional<PeriodicBox> periodic{};  ///< the box that vertices and simplices repeat with
 };
 
 /// Some vertices and simplices. A mesh numbers its vertices 0, 1, 2, ... in the order in which they
@@ -49,6 +51,11 @@ struct MeshBlock {
   std::vector<Point<3>> vertices{};          ///< that come for the first time
   std::vector<std::uint64_t> input_index{};  ///< of `vertices`, if the header says so
   std::vector<std::uint64_t> corners{};      ///< dimension + 1 vertices a simplex, oriented
+  /// Of a periodic mesh, for each of `corners` the copy of the vertex that it is: so many periods
+  /// along each of its `dimension` axes beyond the vertex, -1, 0 or 1. Of the corners of a simplex,
+  /// the first in the order of coordinates (x, then y, then z) has 0. Shape: corners.size() *
+  /// dimension; empty for other meshes.
+  std::vector<std::int8_t> offsets{};
   std::vector<std::uint64_t> finalized{};    ///< vertices that are used no more
   /// Of `vertices`, the multiples of the header's lattice that they are, if it has one; or none:
   /// then they are found from the coordinates. Who changes coordinates clears these.
@@ -178,6 +185,8 @@ class SPILLWAY_API MeshInMemory : public MeshSink {
   }
   /// Vertices of all simplices. Shape: totals().simplices * (header().dimension + 1).
   [[nodiscard]] const std::vector<std::uint64_t>& corners() const { return corners_; }
+  /// As MeshBlock::offsets. Shape: corners().size() * header().dimension, or none.
+  [[nodiscard]] const std::vector<std::int8_t>& offsets() const { return offsets_; }
   /// Of the vertices: those of the header.
   [[nodiscard]] const AttributeColumns& attributes() const { return attributes_; }
 
@@ -190,6 +199,7 @@ class SPILLWAY_API MeshInMemory : public MeshSink {
   std::vector<Point<3>> vertices_;
   std::vector<std::uint64_t> input_index_;
   std::vector<std::uint64_t> corners_;
+  std::vector<std::int8_t> offsets_;
   AttributeColumns attributes_;
 };
 

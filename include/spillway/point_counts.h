@@ -22,6 +22,8 @@ struct PointCounts {
   /// Not read, though the files should hold them: what PointOptions::salvage could not save.
   std::uint64_t lost = 0;
   std::uint64_t where = 0;  ///< dropped, as PointOptions::where does not hold
+  std::uint64_t wrapped = 0;  ///< kept, and brought into the periodic box from outside
+  std::uint64_t rounded = 0;  ///< kept, and rounded to where copies are exact (PeriodicBox)
   /// Bit n: points of class n are among those that `classes` counts.
   std::bitset<256> other_classes{};
 
@@ -37,6 +39,8 @@ struct PointCounts {
     thinned += other.thinned;
     lost += other.lost;
     where += other.where;
+    wrapped += other.wrapped;
+    rounded += other.rounded;
     other_classes |= other.other_classes;
     return *this;
   }

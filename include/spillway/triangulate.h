@@ -6,6 +6,7 @@
 #include <spillway/error.h>
 #include <spillway/export.h>
 #include <spillway/mesh.h>
+#include <spillway/periodic.h>
 #include <spillway/points.h>
 #include <spillway/report.h>
 
@@ -19,13 +20,17 @@ namespace spillway {
 
 class RunTrace;
 
-/// What is made. Only the first four members change the mesh; the others change the order in which
+/// What is made. Only the first five members change the mesh; the others change the order in which
 /// it comes, and how fast.
 struct TriangulateOptions {
   int dimension = 2;                  ///< 2: triangles over x, y; 3: tetrahedra; up to 6: simplices
   Heights heights = Heights::kFirst;  ///< dimension 2
   std::optional<double> max_edge{};   ///< leave out simplices with a longer edge
   bool input_index = false;           ///< vertices carry their index in the input
+  /// Dimensions 2 and 3: the points repeat with this box, and what is made is the triangulation of
+  /// all copies, of which each simplex that differs by more than whole periods comes once
+  /// (MeshBlock::offsets). Not with max_edge.
+  std::optional<PeriodicBox> periodic{};
   std::size_t tile_points = 0;        ///< most of a tile; 0: chosen by the memory
   std::size_t leaf_points = 0;        ///< most of a leaf; 0: chosen by number and memory
   Division division = Division::kLeastBorder;

@@ -1,5 +1,8 @@
 #include "stream/checker/stream_block.h"
 
+#include <cmath>
+#include <utility>
+
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
 #include "src/geometry/dimensions.h"
@@ -7,6 +10,34 @@
 #include "stream/checker/mesh_proof.h"
 
 namespace spillway::checker {
+
+namespace {
+
+/// Rounded.
+template <int D>
+double volume_of(const std::array<Point<D>, D + 1>& corners) {
+  std::array<Point<D>, D> edges;
+  for (int i = 0; i < D; ++i) {
+    for (int k = 0; k < D; ++k) edges[i][k] = corners[i + 1][k] - corners[0][k];
+  }
+  double volume = 1;
+  for (int column = 0; column < D; ++column) {
+    int pivot = column;
+    for (int i = column + 1; i < D; ++i) {
+      if (std::abs(edges[i][column]) > std::abs(edges[pivot][column])) pivot = i;
+    }
+    if (edges[pivot][column] == 0) return 0;
+    std::swap(edges[pivot], edges[column]);
+    volume *= edges[column][column] / (column + 1);
+    for (int i = column + 1; i < D; ++i) {
+      const double factor = edges[i][column] / edges[column][column];
+      for (int k = column; k < D; ++k) edges[i][k] -= factor * edges[column][k];
+    }
+  }
+  return std::abs(volume);
+}
+
+}  // namespace
 
 template <int D>
 void StreamBlock<D>::examine(const StreamCoordinates<D>& coordinates, const CheckerOptions& options,
@@ -37,11 +68,14 @@ void StreamBlock<D>::examine_simplices(const StreamCoordinates<D>& coordinates,
   used.assign(points.size(), false);
   positive.assign(simplices(), true);
   not_positive = 0;
+  volume = 0;
   Faults faults(found, options.most_faults);
   for (std::size_t s = 0; s < positive.size(); ++s) {
     for (int i = 0; i <= D; ++i) used[block.corners[s * (D + 1) + i]] = true;
     if (task == StreamTask::kCount) continue;
-    const int o = orientation<D>(simplex(s));
+    const std::array<Point<D>, D + 1> corners = simplex(s, coordinates);
+    if (coordinates.torus()) volume += volume_of<D>(corners);
+    const int o = orientation<D>(corners);
     if (o > 0) continue;
     positive[s] = false;
     ++not_positive;
@@ -58,7 +92,7 @@ void StreamBlock<D>::match_facets(const StreamCoordinates<D>& coordinates,
   inner_facets = 0;
   not_delaunay = 0;
   heads_.assign(points.size(), kNone);
-  links_.resize(block.corners.size());
+  links_.resize(first_across());
   Faults faults(found, options.most_faults);
   std::uint64_t last_twin = simplices();
   for (std::uint32_t f = 0; f < links_.size(); ++f) {
@@ -95,6 +129,9 @@ void StreamBlock<D>::match_facets(const StreamCoordinates<D>& coordinates,
   for (std::uint32_t f = 0; f < links_.size(); ++f) {
     if (links_[f].next != kMatched) open.push_back(f);
   }
+  for (std::size_t f = first_across(); f < block.corners.size(); ++f) {
+    open.push_back(static_cast<std::uint32_t>(f));
+  }
 }
 
 template <int D>
@@ -111,7 +148,7 @@ void StreamBlock<D>::prove_facet(std::uint32_t older, std::uint32_t newer, bool 
   }
   ++inner_facets;
   const std::uint32_t apex = block.corners[older];
-  const ApexSide side = apex_side<D>(simplex(a), points[apex], options);
+  const ApexSide side = apex_side<D>(simplex(a, coordinates), points[apex], options);
   if (side == ApexSide::kOutside) return;
   ++not_delaunay;
   faults.add_apex(side, text(a, coordinates), vertex_text<D>(named(apex, coordinates)),

@@ -76,6 +76,7 @@ class StreamBlock {
   std::uint64_t not_delaunay = 0;    ///< of these
   std::uint64_t not_positive = 0;    ///< simplices
   std::uint64_t canonical_hash = 0;  ///< of the block's simplices
+  double volume = 0;                 ///< of a periodic mesh: of the block's simplices, rounded
   CheckReport found;                 ///< only its faults
 
   /// Hashes the simplices and matches their facets. To prove them is to test their orientation and
@@ -84,9 +85,26 @@ class StreamBlock {
                StreamTask task);
 
   [[nodiscard]] std::uint64_t simplices() const { return block.corners.size() / (D + 1); }
-  [[nodiscard]] std::array<Point<D>, D + 1> simplex(std::size_t s) const {
+  /// The first corner that has an offset.
+  [[nodiscard]] std::size_t first_across() const {
+    return block.corners.size() - block.offsets.size();
+  }
+  [[nodiscard]] CornerOffset offset(std::size_t corner) const {
+    return corner < first_across() ? kNoOffset : block.offsets[corner - first_across()];
+  }
+  /// Its corners, where its offsets put them.
+  [[nodiscard]] std::array<Point<D>, D + 1> simplex(std::size_t s,
+                                                    const StreamCoordinates<D>& coordinates) const {
     std::array<Point<D>, D + 1> result;
-    for (int i = 0; i <= D; ++i) result[i] = points[block.corners[s * (D + 1) + i]];
+    for (int i = 0; i <= D; ++i) {
+      const std::size_t corner = s * (D + 1) + i;
+      result[i] = points[block.corners[corner]];
+      if (corner < first_across()) continue;
+      for (int k = 0; k < D; ++k) {
+        const int periods = periods_along(offset(corner), k);
+        if (periods != 0) result[i][k] = coordinates.torus()->moved(k, result[i][k], periods);
+      }
+    }
     return result;
   }
   [[nodiscard]] NamedVertex<D> named(std::uint32_t vertex,

@@ -23,7 +23,14 @@ StreamCoordinates<D>::StreamCoordinates(const MeshStreamHeader& header,
                                         const std::optional<IntegerLattice>& input_lattice)
     : lattice_(lattice_of<D>(header, input_lattice)),
       blocks_hold_integers_(lattice_ && header.lattice),
-      on_lattice_(lattice_ && lattice_->isotropic(D)) {}
+      on_lattice_(lattice_ && lattice_->isotropic(D)) {
+  if (!header.periodic) return;
+  if (on_lattice_) {
+    torus_.emplace(*header.periodic, D, *lattice_);
+  } else {
+    torus_.emplace(*header.periodic, D);
+  }
+}
 
 template <int D>
 int StreamCoordinates<D>::axis_off_lattice(const LatticePoint& in_block) const {

@@ -5,6 +5,7 @@
 #include "formats/meshes/common/mesh_stream.h"
 #include "src/geometry/lattice.h"
 #include "src/geometry/point.h"
+#include "src/geometry/torus.h"
 
 namespace spillway::checker {
 
@@ -20,6 +21,9 @@ class StreamCoordinates {
 
   /// The lattice that vertices must lie on, if any.
   [[nodiscard]] const std::optional<IntegerLattice>& lattice() const { return lattice_; }
+
+  /// Of a periodic mesh, the box that it repeats with, where predicates run.
+  [[nodiscard]] const std::optional<Torus>& torus() const { return torus_; }
 
   /// Whether predicates run on integers.
   [[nodiscard]] bool on_lattice() const { return on_lattice_; }
@@ -41,6 +45,7 @@ class StreamCoordinates {
 
  private:
   std::optional<IntegerLattice> lattice_;
+  std::optional<Torus> torus_;
   bool blocks_hold_integers_;
   bool on_lattice_;
 };

@@ -1,6 +1,8 @@
 #include "stream/checker/stream_proof.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include <spillway/detail/probing_table.h>
@@ -9,6 +11,7 @@
 #include "src/parallel/parallel.h"
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/needed_vertices.h"
+#include "stream/checker/torus_boundary.h"
 
 namespace spillway::checker {
 namespace {
@@ -16,23 +19,33 @@ namespace {
 // A facet that one simplex has so far. 24 bytes.
 template <int D>
 struct UnpairedFacet {
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0} >> 2;
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0} >> 20;
 
   std::array<std::uint32_t, D> facet{};  // slots, sorted
   std::uint32_t apex = 0;                // slot
-  std::uint64_t simplex : 62 = kEmpty;
-  std::uint64_t odd : 1 = 0;       // as SortedFacet says
-  std::uint64_t positive : 1 = 0;  // whether the simplex is
+  std::uint64_t simplex : 44 = kEmpty;
+  std::uint64_t offsets : 12 = 0;      // of the second and the third corner, seen from the first
+  std::uint64_t apex_offset : 6 = 0;   // likewise
+  std::uint64_t odd : 1 = 0;           // as SortedFacet says
+  std::uint64_t positive : 1 = 0;      // whether the simplex is
 
   [[nodiscard]] bool empty() const { return simplex == kEmpty; }
   [[nodiscard]] bool same_key(const UnpairedFacet& other) const {
-    return same_numbers(facet, other.facet);
+    return same_numbers(facet, other.facet) && offsets == other.offsets;
   }
   [[nodiscard]] std::uint64_t scattered() const {
     std::uint64_t key = std::uint64_t{facet[0]} << 32 | facet[1];
     for (int i = 2; i < D; ++i) key = scatter(key) + facet[i];
-    return scatter(key);
+    return scatter(key + offsets);
   }
+};
+
+// A simplex of a periodic mesh, seen from the first corner of one of its facets: that is in the
+// box, so that all corners are exact, as none is a period away from another one.
+template <int D>
+struct FacetFrame {
+  std::array<Point<D>, D + 1> corners{};
+  bool fits = true;  // all offsets are -1, 0 or 1
 };
 
 // Blocks that are examined at once.
@@ -52,7 +65,10 @@ class StreamProof {
         task_(task),
         report_(report),
         faults_(report, options.most_faults),
-        coordinates_(reader.header(), options.input_lattice) {}
+        coordinates_(reader.header(), options.input_lattice) {
+    low_.fill(std::numeric_limits<double>::infinity());
+    high_.fill(-std::numeric_limits<double>::infinity());
+  }
 
   void run() {
     Batch<D> now;
@@ -114,6 +130,7 @@ class StreamProof {
       const Point<D> point = coordinates_.for_predicates(mesh.vertex<D>(block.points.size()));
       const int axis = coordinates_.axis_off_lattice(vertex);
       if (axis >= 0) report_off_lattice(block.first_vertex + block.points.size(), vertex, axis);
+      if (coordinates_.torus()) enter_in_box(block, point);
       block.points.push_back(point);
       if (options_.vertex) {
         options_.vertex(coordinates_.block_to_output(vertex),
@@ -121,6 +138,23 @@ class StreamProof {
       }
     }
     vertices_.enter(mesh, block.points, block.slots);
+  }
+
+  // A vertex must lie in the periodic box, where its copies are exact.
+  void enter_in_box(const StreamBlock<D>& block, const Point<D>& point) {
+    for (int k = 0; k < D; ++k) {
+      low_[k] = std::min(low_[k], point[k]);
+      high_[k] = std::max(high_[k], point[k]);
+    }
+    Point<D> wrapped = point;
+    const Wrapping wrapping = coordinates_.torus()->wrap(wrapped);
+    if (task_ == StreamTask::kCount || !(wrapping.moved || wrapping.rounded)) return;
+    ++outside_;
+    const NamedVertex<D> vertex{block.first_vertex + block.points.size(),
+                                coordinates_.to_output(point)};
+    faults_.add("{} is {}", vertex_text<D>(vertex),
+                wrapping.moved ? "outside of the periodic box"
+                               : "no multiple of the step at which its copies are exact");
   }
 
   void report_off_lattice(std::uint64_t number, const LatticePoint& vertex, int axis) {
@@ -142,6 +176,7 @@ class StreamProof {
     inner_ += block.inner_facets;
     not_delaunay_ += block.not_delaunay;
     not_positive_ += block.not_positive;
+    volume_ += block.volume;
     for (std::size_t v = 0; v < block.slots.size(); ++v) {
       if (block.used[v]) vertices_[block.slots[v]].used = true;
     }
@@ -166,12 +201,19 @@ class StreamProof {
     const int opposite = static_cast<int>(number % (D + 1));
     std::array<std::uint32_t, D + 1> slots;
     for (int i = 0; i <= D; ++i) slots[i] = block.slots[block.block.corners[s * (D + 1) + i]];
-    const SortedFacet<D> facet(slots.data(), opposite);
     UnpairedFacet<D> entry;
-    entry.facet = facet.vertices;
-    entry.apex = slots[opposite];
+    FacetFrame<D> frame;
+    if (number >= block.first_across()) {
+      frame = sort_across(block, s, opposite, slots, entry);
+      if (!frame.fits) return report_far_corners(block, s);
+    } else {
+      const SortedFacet<D> facet(slots.data(), opposite);
+      entry.facet = facet.vertices;
+      entry.apex = slots[opposite];
+      entry.odd = facet.odd ? 1 : 0;
+      if (coordinates_.torus()) frame.corners = block.simplex(s, coordinates_);
+    }
     entry.simplex = block.first_simplex + s;
-    entry.odd = facet.odd ? 1 : 0;
     entry.positive = block.positive[s] ? 1 : 0;
     UnpairedFacet<D>* older = facets_.find(entry);
     if (older == nullptr) {
@@ -179,7 +221,8 @@ class StreamProof {
       facets_.insert(entry);
       return;
     }
-    if (task_ == StreamTask::kProve && older->apex == entry.apex) {
+    if (task_ == StreamTask::kProve && older->apex == entry.apex &&
+        older->apex_offset == entry.apex_offset) {
       // The older one stays, as if it were alone.
       if (last_twin_ != entry.simplex) {
         faults_.add("{} has the same vertices as {} {}", block.text(s, coordinates_),
@@ -188,14 +231,72 @@ class StreamProof {
       last_twin_ = entry.simplex;
       return;
     }
-    if (task_ == StreamTask::kProve) prove_facet(block, s, entry, *older);
+    if (task_ == StreamTask::kProve) prove_facet(block, s, entry, *older, frame);
     for (const std::uint32_t slot : older->facet) vertices_.release(slot);
     vertices_.release(older->apex);
     facets_.erase(older);
   }
 
+  [[nodiscard]] Point<D> moved(Point<D> point, std::uint64_t offset) const {
+    for (int k = 0; k < std::min(D, 3); ++k) {
+      const int periods = periods_along(static_cast<CornerOffset>(offset), k);
+      point[k] = coordinates_.torus()->moved(k, point[k], periods);
+    }
+    return point;
+  }
+
+  // Fills facet, apex, their offsets and `odd` for a simplex with offsets.
+  FacetFrame<D> sort_across(const StreamBlock<D>& block, std::size_t s, int opposite,
+                            const std::array<std::uint32_t, D + 1>& slots,
+                            UnpairedFacet<D>& entry) {
+    FacetFrame<D> frame;
+    if constexpr (D <= 3) {
+      std::array<std::array<int, 3>, D + 1> periods;
+      std::array<int, D> order;
+      for (int i = 0, n = 0; i <= D; ++i) {
+        for (int k = 0; k < 3; ++k) {
+          periods[i][k] = periods_along(block.offset(s * (D + 1) + i), k);
+        }
+        if (i != opposite) order[n++] = i;
+      }
+      const auto before = [&](int a, int b) {
+        return std::pair(slots[a], periods[a]) < std::pair(slots[b], periods[b]);
+      };
+      bool odd = (D - opposite) % 2 == 0;
+      for (int last = D - 1; last > 0; --last) {
+        for (int j = 0; j < last; ++j) {
+          if (!before(order[j + 1], order[j])) continue;
+          std::swap(order[j], order[j + 1]);
+          odd = !odd;
+        }
+      }
+      const std::array<int, 3> first = periods[order[0]];
+      std::array<std::uint64_t, D + 1> codes;
+      for (int i = 0; i <= D; ++i) {
+        for (int k = 0; k < 3; ++k) {
+          periods[i][k] -= first[k];
+          frame.fits &= std::abs(periods[i][k]) <= 1;
+        }
+        codes[i] = static_cast<std::uint64_t>(corner_offset(periods[i]));
+        frame.corners[i] = moved(block.points[block.block.corners[s * (D + 1) + i]], codes[i]);
+      }
+      for (int j = 0; j < D; ++j) entry.facet[j] = slots[order[j]];
+      entry.offsets = D == 3 ? codes[order[1]] | codes[order[D - 1]] << 6 : codes[order[1]];
+      entry.apex = slots[opposite];
+      entry.apex_offset = codes[opposite];
+      entry.odd = odd ? 1 : 0;
+    }
+    return frame;
+  }
+
+  void report_far_corners(const StreamBlock<D>& block, std::size_t s) {
+    if (last_twin_ == block.first_simplex + s) return;
+    last_twin_ = block.first_simplex + s;
+    faults_.add("{} has corners more than a period apart", block.text(s, coordinates_));
+  }
+
   void prove_facet(const StreamBlock<D>& block, std::size_t s, const UnpairedFacet<D>& facet,
-                   const UnpairedFacet<D>& older) {
+                   const UnpairedFacet<D>& older, const FacetFrame<D>& frame) {
     if (facet.positive == 0 || older.positive == 0) return;
     if (facet.odd == older.odd) {
       faults_.add("{} and {} overlap: they lie on the same side of their common {}", text(older),
@@ -204,7 +305,10 @@ class StreamProof {
     }
     ++inner_;
     const auto& apex = vertices_[older.apex];
-    const ApexSide side = apex_side<D>(block.simplex(s), apex.point, options_);
+    const ApexSide side =
+        coordinates_.torus()
+            ? apex_side<D>(frame.corners, moved(apex.point, older.apex_offset), options_)
+            : apex_side<D>(block.simplex(s, coordinates_), apex.point, options_);
     if (side == ApexSide::kOutside) return;
     ++not_delaunay_;
     faults_.add_apex(side, block.text(s, coordinates_), vertex_text<D>(named(apex)), text(older));
@@ -232,7 +336,11 @@ class StreamProof {
     if (not_positive_ == 0) {
       prove("all {} {} are positively oriented", report_.simplices, Words<D>::kSimplices);
     }
-    const bool matched = faults_.count() == report_.off_lattice + unused_ + not_delaunay_;
+    if (coordinates_.torus() && outside_ == 0) {
+      prove("all {} vertices are in the periodic box, and their copies exact", report_.vertices);
+    }
+    const bool matched =
+        faults_.count() == report_.off_lattice + unused_ + not_delaunay_ + outside_;
     if (!matched) return;
     prove("every {} is in two {} or on the boundary", Words<D>::kFacet, Words<D>::kSimplices);
     if (not_delaunay_ == 0) {
@@ -240,12 +348,40 @@ class StreamProof {
             options_.any_delaunay ? "" : ", ties broken canonically",
             report_.on_lattice ? ", on the integers of the lattice" : "");
     }
+    if (coordinates_.torus()) return check_torus();
     const std::uint64_t before = faults_.count();
     check_boundary();
     if (faults_.count() == before) {
       prove("the {} boundary {}s form one convex surface: the {} cover the hull exactly once",
             report_.hull_facets, Words<D>::kFacet, Words<D>::kSimplices);
       if (unused_ == 0) prove("no two vertices are equal, as that would cover some place twice");
+    }
+  }
+
+  // The mesh of all copies covers each place equally often, but beyond its boundary, so that volumes
+  // add up to a multiple of the hull's: a sum that is rounded tells which one.
+  void check_torus() {
+    if constexpr (D <= 3) {
+      std::vector<std::array<Point<D>, D>> facets;
+      facets_.for_each([&](const UnpairedFacet<D>& facet) {
+        std::array<Point<D>, D>& points = facets.emplace_back();
+        points[0] = vertices_[facet.facet[0]].point;
+        for (int i = 1; i < D; ++i) {
+          points[i] = moved(vertices_[facet.facet[i]].point, facet.offsets >> (6 * (i - 1)) & 63);
+        }
+      });
+      const TorusBoundary boundary =
+          torus_boundary<D>(*coordinates_.torus(), low_, high_, facets);
+      if (!boundary.fault.empty()) return faults_.add("{}", boundary.fault);
+      constexpr double kRounding = 1e-3;
+      const double times = volume_ / boundary.volume;
+      if (!(std::abs(times - 1) <= kRounding)) {
+        return faults_.add("the {} cover the periodic box {:.6g} times", Words<D>::kSimplices,
+                           times);
+      }
+      prove("the volumes of the {} sum to that of the {}: they cover it exactly once",
+            Words<D>::kSimplices,
+            coordinates_.torus()->closed() ? "periodic box" : "hull in the periodic box");
     }
   }
 
@@ -325,6 +461,10 @@ class StreamProof {
   std::uint64_t not_delaunay_ = 0;               // of these
   std::uint64_t not_positive_ = 0;               // simplices
   std::uint64_t unused_ = 0;                     // vertices
+  std::uint64_t outside_ = 0;                    // of the periodic box, or inexact: vertices
+  double volume_ = 0;                            // of a periodic mesh, rounded
+  Point<D> low_{};                               // of the vertices of a periodic mesh
+  Point<D> high_{};
   std::uint64_t last_twin_ = ~std::uint64_t{0};  // the last simplex reported as one
 };
 

@@ -8,8 +8,9 @@
 
 namespace spillway::stream {
 
-RepeatedPoints::RepeatedPoints(PointStream& points, bool can_read_again, ScratchFolder& scratch)
-    : points_(points), scratch_(can_read_again ? nullptr : &scratch) {}
+RepeatedPoints::RepeatedPoints(PointStream& points, bool can_read_again, ScratchFolder& scratch,
+                               RepeatedIndex index)
+    : points_(points), index_(index), scratch_(can_read_again ? nullptr : &scratch) {}
 
 void RepeatedPoints::repeat() {
   repeats_ = true;
@@ -47,14 +48,16 @@ void RepeatedPoints::decode(SourcePiece& piece, PointBlock& block) {
   } else {
     points_.decode(piece, block);
   }
-  block.index.resize(block.size());
-  std::iota(block.index.begin(), block.index.end(), first);
+  if (index_ == RepeatedIndex::kNumber) {
+    block.index.resize(block.size());
+    std::iota(block.index.begin(), block.index.end(), first);
+  }
   if (!repeats_ && is_kept() && block.size() > 0) keep(first, block);
 }
 
 void RepeatedPoints::keep(std::uint64_t first, const PointBlock& block) {
   PointsView points = PointsView::of(block);
-  points.index = {};
+  if (index_ == RepeatedIndex::kNumber) points.index = {};
   std::vector<std::byte> bytes;
   append_all_points(bytes, points);
   const std::lock_guard lock(mutex_);

@@ -11,13 +11,19 @@
 
 namespace spillway::stream {
 
-/// Points that are read twice. Those of files are read there again; those of pipes, of a program
-/// and those that were thinned are kept in a scratch file meanwhile. As its index each point has a
-/// number, which is the same both times: they ascend, with gaps where points are left out.
+/// What the index of points is that are read more than once.
+enum class RepeatedIndex {
+  kNumber,  ///< a number that is the same each time: they ascend, with gaps where points are left out
+  kInput,   ///< as their source has it
+};
+
+/// Points that are read more than once. Those of files are read there again; those of pipes, of a
+/// program and those that were thinned are kept in a scratch file meanwhile.
 class RepeatedPoints final : public PointStream {
  public:
   /// Both must outlive it. `can_read_again`: whether points.read_again() works.
-  RepeatedPoints(PointStream& points, bool can_read_again, ScratchFolder& scratch);
+  RepeatedPoints(PointStream& points, bool can_read_again, ScratchFolder& scratch,
+                 RepeatedIndex index = RepeatedIndex::kNumber);
 
   /// From now on the points come once more, when all have come.
   void repeat();
@@ -54,6 +60,7 @@ class RepeatedPoints final : public PointStream {
   [[nodiscard]] bool is_kept() const { return !reads_again(); }
 
   PointStream& points_;
+  const RepeatedIndex index_;
   ScratchFolder* scratch_ = nullptr;  ///< null: they are read again
   bool repeats_ = false;
   std::uint64_t numbers_ = 0;

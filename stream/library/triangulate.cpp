@@ -13,6 +13,7 @@
 #include "stream/library/crs_notices.h"
 #include "stream/library/meshes/program_sink.h"
 #include "stream/library/own_parts.h"
+#include "stream/library/periodic_run.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/points_alone.h"
 #include "stream/library/resumable_run.h"
@@ -133,7 +134,7 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   const std::uint64_t own = target->own_memory(context.memory());
   Executor* const executor = context.options().executor.get();
   // Processes tell by the index which of several equal points comes first.
-  const bool index = options.input_index || executor != nullptr;
+  const bool index = options.input_index || executor != nullptr || options.periodic;
   Run run{.context = context,
           .watch = watch,
           .points = points->begin(watch, index),
@@ -143,11 +144,12 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
           .scratch = context.state().scratch(context)};
   run.engine.record_size = run.points.attributes.record_size();
   check(run.points, options.dimension);
+  if (options.periodic) check_periodic(options, *target);
   // Rasters and the like have their own ways with units.
   if (!target->is_product()) tell_units(run.points.crs, run.points.extent, context);
   target->check_attributes(run.points.offered);
   // Processes share points out as they triangulate them.
-  if (!target->wants_simplices() && executor == nullptr) {
+  if (!target->wants_simplices() && executor == nullptr && !options.periodic) {
     if (!options.resume_folder.empty()) {
       throw InvalidArgument(
           "a run of products of points alone triangulates nothing, and cannot go "
@@ -157,7 +159,9 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   }
   if (!options.resume_folder.empty()) run.identity = identity_of(run, *points);
   Report report;
-  if (executor != nullptr) {
+  if (options.periodic) {
+    report = triangulate_periodically(run);
+  } else if (executor != nullptr) {
     report = executor->triangulate(run);
   } else {
     report = run.identity ? triangulate_resumably(run) : triangulate_here(run);

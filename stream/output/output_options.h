@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "src/geometry/lattice.h"
+#include "stream/periodic/periodic_domain.h"
 
 namespace spillway::stream {
 
@@ -14,6 +15,7 @@ struct OutputOptions {
   bool input_index = false;          ///< vertices carry their index in the input
   std::size_t record_size = 0;       ///< bytes of the attributes that vertices carry
   bool imported_vertices = false;    ///< fill Settled::imported_vertices
+  const PeriodicDomain* periodic = nullptr;  ///< of copies of a simplex only one comes
 };
 
 }  // namespace spillway::stream

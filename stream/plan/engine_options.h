@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "stream/checkpoint/checkpoints.h"
+#include "stream/periodic/periodic_domain.h"
 
 namespace spillway::stream {
 
@@ -17,6 +18,7 @@ struct EngineOptions {
   /// Goes on from its last checkpoint, and makes others, if there is one. Points and blocks go on
   /// (PointStream::goes_on), but for points that have all been read.
   Checkpoints* checkpoints = nullptr;
+  std::optional<PeriodicDomain> periodic{};  ///< points come with copies of them
   std::size_t buffered_points = 0;  ///< waiting in memory before any is spilled; 0: by the limit
   /// Points of a border between ranks below which one rank triangulates it; none: chosen by D.
   std::optional<std::size_t> gather_below{};

@@ -210,7 +210,11 @@ std::string describe(const PointCounts& counts) {
   for (const auto& [count, why] : dropped) {
     if (count > 0) text += fmt::format(", {} {}", count, why);
   }
-  return text + fmt::format(", {} kept", counts.kept());
+  text += fmt::format(", {} kept", counts.kept());
+  if (counts.wrapped > 0) {
+    text += fmt::format(", {} of them brought into the periodic box", counts.wrapped);
+  }
+  return text;
 }
 
 }  // namespace spillway

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <type_traits>
 
 #include "src/geometry/dimensions.h"
 #include "src/geometry/longest_edge.h"
+#include "stream/periodic/chosen_simplices.h"
 
 namespace spillway::stream {
 namespace {
@@ -17,6 +19,9 @@ constexpr std::uint8_t kByEmitted = 4;  ///< a final one that is not left out
 
 /// Simplices that are listed before they are appended to the block.
 constexpr std::size_t kListed = 64;
+
+/// More dimensions have no periodic domain.
+constexpr int kMostPeriodic = 3;
 
 /// Memory is fetched this many vertices ahead.
 constexpr VertexId kAhead = 16;
@@ -32,9 +37,14 @@ class Settlement {
         output_(output),
         use_(part.vertex_count()),
         short_number_(std::make_unique_for_overwrite<std::uint32_t[]>(use_.size())),
-        kept_number_(std::make_unique_for_overwrite<VertexId[]>(use_.size())) {}
+        kept_number_(std::make_unique_for_overwrite<VertexId[]>(use_.size())) {
+    if constexpr (D <= kMostPeriodic) {
+      if (output.periodic != nullptr) chosen_.emplace(*output.periodic, positions());
+    }
+  }
 
   Settled<D> run() {
+    find_left_out();
     mark_uses();
     announce_vertices();
     import_and_finalize();
@@ -46,19 +56,20 @@ class Settlement {
   void mark_uses() {
     if constexpr (kOfLeaf) {
       const bool knows_neighbours = part_.open_simplices.size() == part_.open.size();
-      if (knows_neighbours && !output_.max_edge) return mark_uses_from_border();
+      if (knows_neighbours && left_out_.empty()) return mark_uses_from_border();
     }
     mark_all_uses();
   }
 
-  /// Too long simplices count as uses: their vertices belong to the mesh. Infinite ones that are
-  /// final do not: nothing of them is in the mesh, and each of their vertices has finite ones.
+  /// Too long simplices count as uses: their vertices belong to the mesh. Copies of simplices do
+  /// not: other copies have their vertices. Infinite ones that are final do not: nothing of them is
+  /// in the mesh, and each of their vertices has finite ones.
   void mark_all_uses() {
+    const std::uint8_t unused = output_.max_edge ? kByFinal : 0;
     for (std::size_t s = 0; s < part_.simplex_count(); ++s) {
       if (part_.fates[s] == Fate::kFinal) {
-        const Corners corners = part_.finite_simplex(s);
-        const std::uint8_t use = is_left_out(corners) ? kByFinal : kByFinal | kByEmitted;
-        for (const VertexId v : corners) use_[v] |= use;
+        const std::uint8_t use = is_left_out(s) ? unused : kByFinal | kByEmitted;
+        for (const VertexId v : part_.finite_simplex(s)) use_[v] |= use;
       } else if (part_.fates[s] == Fate::kKept) {
         ++kept_;
         for (const VertexId v : part_.simplex(s)) {
@@ -108,7 +119,7 @@ class Settlement {
       mesh.vertices[count] = output_point(vertex);
       if (output_.input_index) mesh.input_index[count] = vertex.input_index;
       carry(v, mesh.attributes);
-      hashes_[count] = vertex_hash<D>(world(vertex.position));
+      hashes_[count] = fingerprint(vertex);
       short_number_[v] = count++;
     }
     mesh.vertices.resize(count);
@@ -142,7 +153,7 @@ class Settlement {
   void import(VertexId v) {
     const BorderVertex<D>& vertex = part_.vertex(v);
     short_number_[v] = static_cast<std::uint32_t>(hashes_.size());
-    hashes_.push_back(vertex_hash<D>(world(vertex.position)));
+    hashes_.push_back(fingerprint(vertex));
     result_.imported.push_back(vertex.place);
     if (!output_.imported_vertices) return;
     result_.imported_vertices.push_back(output_point(vertex));
@@ -171,13 +182,24 @@ class Settlement {
       list_final(s, open);
       if (part_.fates[open] == Fate::kKept) {
         keep(part_.open_simplex(place), place);
-      } else {
+      } else if (is_on_hull(part_.open_simplex(place))) {
         ++result_.hull_facets;
       }
       s = open + 1;
     });
     list_final(s, count);
     pass_on_listed();
+    if constexpr (D <= kMostPeriodic) {
+      if (chosen_) result_.torus = chosen_->proof();
+    }
+  }
+
+  /// Whether the facet of an infinite simplex is one of the mesh.
+  bool is_on_hull(const Corners& corners) {
+    if constexpr (D <= kMostPeriodic) {
+      if (chosen_) return chosen_->choose_infinite(corners);
+    }
+    return true;
   }
 
   /// Lists final simplices from `s` on.
@@ -185,13 +207,9 @@ class Settlement {
     while (s < until) {
       if (listed_ == kListed) pass_on_listed();
       const std::size_t end = std::min(until, s + (kListed - listed_));
-      if (output_.max_edge) {
+      if (!left_out_.empty()) {
         for (; s < end; ++s) {
-          if (is_left_out(part_.finite_simplex(s))) {
-            ++result_.left_out;
-          } else {
-            list(s, s + 1);
-          }
+          if (!is_left_out(s)) list(s, s + 1);
         }
       } else {
         list(s, end);
@@ -207,7 +225,7 @@ class Settlement {
     CanonicalHash<D> hash;
     std::array<std::uint32_t, D + 1>* next = &list_[listed_];
     for (std::size_t s = begin; s < end; ++s, ++next) {
-      const Corners corners = part_.finite_simplex(s);
+      const Corners corners = ordered(part_.finite_simplex(s));
       std::uint64_t sum = 0;
       for (int i = 0; i <= D; ++i) {
         const std::uint32_t number = numbers[corners[i]];
@@ -218,6 +236,13 @@ class Settlement {
     }
     listed_ += end - begin;
     result_.hash.add(hash);
+  }
+
+  [[nodiscard]] Corners ordered(const Corners& corners) const {
+    if constexpr (D <= kMostPeriodic) {
+      if (chosen_ && !chosen_->all_chosen()) return chosen_->ordered(corners);
+    }
+    return corners;
   }
 
   /// Appends what was listed to the block: memory that nobody has cleared.
@@ -242,12 +267,50 @@ class Settlement {
     return position;
   }
 
+  /// Of a vertex of the mesh.
+  [[nodiscard]] std::uint64_t fingerprint(const BorderVertex<D>& vertex) const {
+    if constexpr (D <= kMostPeriodic) {
+      if (chosen_) return vertex_hash<D>(world(chosen_->in_box(vertex.position)));
+    }
+    return vertex_hash<D>(world(vertex.position));
+  }
+
+  void find_left_out() {
+    if constexpr (D <= kMostPeriodic) {
+      if (chosen_ && !chosen_->all_chosen()) {
+        return leave_out([this](const Corners& corners) { return !chosen_->choose(corners); });
+      }
+    }
+    if (!output_.max_edge) return;
+    leave_out([this](const Corners& corners) {
+      const bool left_out = is_too_long(corners);
+      result_.left_out += left_out ? 1 : 0;
+      return left_out;
+    });
+  }
+
+  /// Asks of each simplex that is final whether it is left out.
+  template <typename IsLeftOut>
+  void leave_out(const IsLeftOut& is_left_out) {
+    left_out_.resize(part_.simplex_count());
+    for (std::size_t s = 0; s < left_out_.size(); ++s) {
+      if (part_.fates[s] == Fate::kFinal) left_out_[s] = is_left_out(part_.finite_simplex(s));
+    }
+  }
+
+  [[nodiscard]] bool is_left_out(std::size_t s) const { return !left_out_.empty() && left_out_[s]; }
+
   /// Whether a finite simplex has too long an edge.
-  [[nodiscard]] bool is_left_out(const Corners& corners) const {
-    if (!output_.max_edge) return false;
+  [[nodiscard]] bool is_too_long(const Corners& corners) const {
     std::array<Point<D>, D + 1> positions;
     for (int i = 0; i <= D; ++i) positions[i] = world(part_.position(corners[i]));
     return has_longer_edge<D>(positions, *output_.max_edge);
+  }
+
+  [[nodiscard]] std::vector<Point<D>> positions() const {
+    std::vector<Point<D>> positions(part_.vertex_count());
+    for (VertexId v = 0; v < positions.size(); ++v) positions[v] = part_.position(v);
+    return positions;
   }
 
   const Part& part_;
@@ -256,6 +319,8 @@ class Settlement {
   std::unique_ptr<std::uint32_t[]> short_number_;  // by vertex, if it is in the mesh block
   std::unique_ptr<VertexId[]> kept_number_;        // by vertex, if it is in the border
   std::vector<std::uint64_t> hashes_;              // by short number
+  std::vector<bool> left_out_;                     // by simplex that is final; empty if none is
+  std::optional<ChosenSimplices<std::min(D, kMostPeriodic)>> chosen_;  // in a periodic domain
   std::size_t kept_ = 0;                           // simplices
   std::array<std::array<std::uint32_t, D + 1>, kListed> list_;
   std::size_t listed_ = 0;

@@ -13,6 +13,7 @@
 #include "src/geometry/canonical_hash.h"
 #include "stream/output/output_options.h"
 #include "stream/output/stream_place.h"
+#include "stream/periodic/torus_proof.h"
 #include "stream/triangulate/border.h"
 
 namespace spillway::stream {
@@ -29,6 +30,7 @@ struct Settled {
   std::uint64_t final_simplices = 0;            ///< finite and infinite ones
   std::uint64_t hull_facets = 0;                ///< infinite simplices that are final
   std::uint64_t left_out = 0;  ///< finite ones that are final, but with too long an edge
+  TorusProof torus;            ///< in a periodic domain
   Border<D> border;
 };
 

@@ -115,6 +115,9 @@ class TileEngine : private DealingWatch {
   void count_retriangulated(std::uint64_t points) { counts_.retriangulated += points; }
   void count_hull_facets(std::uint64_t facets) { counts_.hull_facets += facets; }
   void count_left_out(std::uint64_t simplices) { counts_.left_out += simplices; }
+  void count_torus(const TorusProof& proof) { counts_.add(proof); }
+  /// Of a periodic domain, once all is triangulated.
+  [[nodiscard]] const TorusProof& torus() const { return counts_.torus(); }
 
   /// The number in the sink's stream of a vertex that has been announced there.
   [[nodiscard]] std::uint64_t number_of(const StreamPlace& place) const {

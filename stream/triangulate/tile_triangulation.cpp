@@ -30,6 +30,7 @@ template <int D>
 void count_settled(const Settled<D>& settled, StreamCounts& counts) {
   counts.hull_facets += settled.hull_facets;
   counts.left_out += settled.left_out;
+  counts.add(settled.torus);
   counts.borders.add(settled.border.simplices.size(), settled.border.bytes());
 }
 

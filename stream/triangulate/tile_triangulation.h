@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -82,11 +83,22 @@ struct StreamCounts {
   std::atomic<std::uint64_t> densest_leaf = 0;    ///< simplices for each of its points, rounded up
   std::atomic<std::uint64_t> retriangulated = 0;  ///< points in triangulations of borders
 
+  void add(const TorusProof& proof) {
+    const std::lock_guard lock(torus_mutex_);
+    torus_.add(proof);
+  }
+  /// Once nobody adds to it.
+  [[nodiscard]] const TorusProof& torus() const { return torus_; }
+
   template <typename State>
   void state(State& state) {
     state(borders, points, duplicates, hull_facets, left_out, final_in_leaves, final_in_tiles,
-          leaves, densest_leaf, retriangulated);
+          leaves, densest_leaf, retriangulated, torus_);
   }
+
+ private:
+  std::mutex torus_mutex_;
+  TorusProof torus_;  ///< in a periodic domain
 };
 
 /// What all tiles and merges of a run share; used by many threads at once.

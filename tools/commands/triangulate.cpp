@@ -25,6 +25,7 @@
 #include "tools/commands/tile_files.h"
 #include "tools/options/command_options.h"
 #include "tools/options/input_options.h"
+#include "tools/options/periodic_option.h"
 #include "tools/options/triangulation_options.h"
 #include "tools/process/rank_job.h"
 #include "tools/report/speed_up_estimate.h"
@@ -61,6 +62,7 @@ struct TriangulateCommandOptions : TriangulationOptions {
   std::string simulated_points;
   bool parts = false;
   std::string tiles;
+  std::string periodic;
 
   [[nodiscard]] bool simulates() const { return !core_list.empty(); }
 };
@@ -79,6 +81,7 @@ void add_options(CommandLine& app, TriangulateCommandOptions& options) {
       "2: triangles over x, y, with z carried along; 3: tetrahedra; 4 to 6: simplices, of "
       "npy arrays with so many columns, and of points with attributes x4, x5, x6",
       6);
+  add_periodic(app, options.periodic);
   app.add_flag("--id", options.input_index, "Write each vertex's index in the input");
   add_attributes(app, options.attributes,
                  "Attributes of points that vertices keep [none; of ply the colour]");
@@ -129,7 +132,9 @@ void say_what_heights_are(const TriangulateCommandOptions& options, const Points
 
 void say(const TriangulateCommandOptions& options, const Report& report, const RunFacts& facts,
          ProgressLine& progress) {
-  if (!report.points.all_kept()) progress.say(describe(report.points));
+  if (!report.points.all_kept() || report.points.wrapped > 0) {
+    progress.say(describe(report.points));
+  }
   if (report.left_out > 0) {
     progress.say(
         fmt::format("{} simplices with an edge longer than {} left out: this is no longer the "
@@ -220,6 +225,7 @@ void check_options(const TriangulateCommandOptions& options) {
     }
   }
   check_duplicates(options, options.dimension);
+  periodic_box(options.periodic, options.dimension);
   if (options.tiles.empty()) {
     refuse_pattern(options.output);
   } else if (options.parts || distributed::launch().as_ranks) {
@@ -261,6 +267,7 @@ int run(const TriangulateCommandOptions& options) {
   say_what_heights_are(options, points->header(), progress);
   TriangulateOptions how = triangulate_options(options, options.dimension);
   how.input_index = options.input_index;
+  how.periodic = periodic_box(options.periodic, options.dimension);
   const TracedReport report = triangulate_and_trace(options, *points, *mesh, how, context,
                                                     options.simulates() ? &recorder : nullptr);
   if (!is_first_rank()) return kExitDone;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <spillway/periodic.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/meshes/common/corner_offset.h"
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "src/geometry/framed_point.h"
@@ -38,6 +41,7 @@ struct MeshFileHeader {
   /// Whether all numbers of the attributes `red`, `green` and `blue` are known to be below 256:
   /// then they are bytes, though they may be of 16 bits, as LAS has no others.
   bool colours_are_bytes = false;
+  std::optional<PeriodicBox> periodic{};  ///< the mesh repeats with it; in output coordinates
 };
 
 /// A whole mesh in memory, as `check`, `info` and `convert` read it.
@@ -47,6 +51,7 @@ struct Mesh {
   std::vector<std::uint64_t> corners;      ///< dimension+1 vertex numbers a simplex, in file order
   std::vector<std::uint64_t> input_index;  ///< one a vertex if header.has_input_index, else empty
   std::vector<std::byte> attributes{};     ///< of all vertices: a record each
+  std::vector<CornerOffset> offsets{};     ///< of `corners`, of a periodic mesh; else empty
   std::string_view format{};               ///< name of the format of the file that was read
   /// What was made of the file, or left out, that it does not say itself.
   std::vector<std::string> notices{};

@@ -25,12 +25,14 @@ struct MeshContents {
   int dimension = 2;
   bool has_input_index = false;
   bool has_attributes = false;
+  bool is_periodic = false;
 };
 
 /// Those that a header tells: MeshFileHeader or MeshStreamHeader.
 template <typename Header>
 MeshContents contents_of(const Header& header) {
-  return {header.dimension, header.has_input_index, !header.attributes.empty()};
+  return {header.dimension, header.has_input_index, !header.attributes.empty(),
+          header.periodic.has_value()};
 }
 
 /// Which attributes of vertices a format holds.
@@ -48,6 +50,8 @@ struct MeshFiles {
   std::unique_ptr<OutputFile> simplices;    ///< of a format in several files
   std::unique_ptr<OutputFile> input_index;  ///< likewise, if there is an input index
   std::unique_ptr<OutputFile> attributes;   ///< likewise, if there are some
+  std::unique_ptr<OutputFile> offsets;      ///< likewise, of a periodic mesh
+  std::unique_ptr<OutputFile> box;          ///< likewise
 };
 
 /// What a format does whose meshes are several files side by side.
@@ -89,6 +93,7 @@ struct MeshFormat {
   int most_dimension = 2;  ///< of its simplices: 3 means tetrahedra besides triangles
   bool holds_input_index = false;
   HeldAttributes held_attributes = HeldAttributes::kNone;
+  bool holds_offsets = false;  ///< meshes may be periodic
   bool takes_colour = false;        ///< unasked: vertices get the colour of their points
   bool rounds_coordinates = false;  ///< to 32-bit floats
   bool needs_regular_file = false;  ///< its beginning is written last

@@ -2,6 +2,7 @@
 // A mesh as it flows: blocks of vertices, of the simplices that use them, and of the word that a
 // vertex is not used any more, so that whoever reads along never holds more than a border.
 
+#include <spillway/periodic.h>
 #include <spillway/totals.h>
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/meshes/common/corner_offset.h"
 #include "formats/points/attributes/attribute_layout.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "src/geometry/box.h"
@@ -32,6 +34,7 @@ struct MeshStreamHeader {
   std::optional<Box<3>> extent;         ///< of the points, in output coordinates, where known
   std::string crs;                      ///< coordinate system (WKT, or "EPSG:n"), empty if unknown
   AttributeLayout attributes;           ///< that vertices carry; first their coordinates beyond z
+  std::optional<PeriodicBox> periodic;  ///< the mesh repeats with it; in output coordinates
 };
 
 /// What a sink makes of a block by itself, before its turn has come: each sink has its own kind.
@@ -57,7 +60,10 @@ struct MeshStreamBlock {
   std::vector<std::byte> attributes;       ///< of `vertices`: a record each, as the header has them
   std::vector<std::uint64_t> imported;     ///< stream numbers of earlier vertices used here
   std::vector<std::uint32_t> corners;      ///< dimension+1 short numbers a simplex, oriented
-  std::vector<std::uint32_t> finalized;    ///< short numbers of vertices that come no more
+  /// Of a periodic mesh, which copies of their vertices the last of `corners` are, a CornerOffset
+  /// each: whole simplices. The corners before them are the vertices themselves.
+  std::vector<CornerOffset> offsets;
+  std::vector<std::uint32_t> finalized;  ///< short numbers of vertices that come no more
   /// What a sink's absorb() made of the members above (`imported` apart); null before.
   std::shared_ptr<const AbsorbedBlock> absorbed;
 
@@ -72,7 +78,7 @@ struct MeshStreamBlock {
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
            attributes.size() + imported.size() * sizeof(imported[0]) +
-           corners.size() * sizeof(corners[0]) + finalized.size() * sizeof(finalized[0]) +
+           corners.size() * sizeof(corners[0]) + offsets.size() + finalized.size() * sizeof(finalized[0]) +
            (absorbed ? absorbed->bytes() : 0);
   }
 
@@ -82,6 +88,7 @@ struct MeshStreamBlock {
     attributes.clear();
     imported.clear();
     corners.clear();
+    offsets.clear();
     finalized.clear();
     absorbed.reset();
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "formats/meshes/common/corner_offset.h"
 #include "src/geometry/framed_point.h"
 
 namespace spillway::formats {
@@ -28,6 +29,11 @@ class MeshWriter {
 
   /// Appends simplices: dimension+1 vertex numbers each, counted from 0, positively oriented.
   virtual void write_simplices(std::span<const std::uint64_t> corners) = 0;
+
+  /// Of a periodic mesh, in a format that holds them: the offsets of corners that have been written,
+  /// from that number on, in ascending order. Corners without any have none.
+  virtual void write_offsets(std::uint64_t /*first_corner*/,
+                             std::span<const CornerOffset> /*offsets*/) {}
 
   /// Completes the file and gives it its final name. Throws Failure if anything is missing.
   virtual void finish() = 0;

@@ -46,6 +46,11 @@ std::uint32_t largest_of(std::span<const std::uint32_t> numbers) {
 
 SpmCounts counts_of(const MeshStreamHeader& header, const MeshStreamBlock& block) {
   const std::size_t corners = header.dimension + 1;
+  if (block.offsets.size() > (header.periodic ? block.corners.size() : 0) ||
+      block.offsets.size() % corners != 0) {
+    fail_to_write(fmt::format("a block has {} offsets for {} corners", block.offsets.size(),
+                              block.corners.size()));
+  }
   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() - 1;
   if (block.vertices.size() > kMost || block.corners.size() / corners > kMost) {
     throw Failure("a block is too large to write", ErrorCode::kTooLarge);
@@ -122,6 +127,81 @@ void read_coordinates(ColumnReader& columns, const MeshStreamHeader& header, std
   }
 }
 
+/// Of the simplices that have offsets, which are stored as they stand, not turned or sorted: their
+/// number and the offsets. append_across() appends their corners.
+void append_offsets(std::vector<std::byte>& out, const MeshStreamHeader& header,
+                    const MeshStreamBlock& block) {
+  const auto offsets = std::as_bytes(std::span(block.offsets));
+  std::byte count[sizeof(std::uint32_t)];
+  store(count, static_cast<std::uint32_t>(offsets.size() / (header.dimension + 1)));
+  out.insert(out.end(), std::begin(count), std::end(count));
+  out.insert(out.end(), offsets.begin(), offsets.end());
+}
+
+void append_across(std::vector<std::byte>& out, const MeshStreamHeader& header,
+                   const MeshStreamBlock& block) {
+  const std::size_t size = header.dimension + 1;
+  const std::span<const std::uint32_t> corners =
+      std::span(block.corners).last(block.offsets.size());
+  std::vector<std::uint32_t> column(corners.size() / size);
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t s = 0; s < column.size(); ++s) column[s] = corners[s * size + i];
+    append_column(out, column);
+  }
+}
+
+bool is_offset(CornerOffset offset, const PeriodicBox& box) {
+  if ((static_cast<std::uint8_t>(offset) & kNoOffsetBits) != 0) return false;
+  for (int k = 0; k < 3; ++k) {
+    const int periods = periods_along(offset, k);
+    if (periods < -1 || (periods != 0 && !box.periodic[k])) return false;
+  }
+  return true;
+}
+
+/// How many simplices have offsets. Takes their number and the offsets off the front of `bytes`.
+std::uint32_t read_offsets(std::span<const std::byte>& bytes, const MeshStreamHeader& header,
+                           std::uint32_t simplices, const FileSpot& where,
+                           std::vector<CornerOffset>& offsets) {
+  const std::size_t size = header.dimension + 1;
+  std::uint32_t count = 0;
+  if (bytes.size() >= sizeof count) count = load<std::uint32_t>(bytes.data());
+  if (count > simplices || bytes.size() < sizeof count + count * size) {
+    throw BadInput(where, "the offsets in a block do not fit; the file is corrupt, make it again");
+  }
+  bytes = bytes.subspan(sizeof count);
+  offsets.resize(count * size);
+  for (std::size_t c = 0; c < offsets.size(); ++c) {
+    offsets[c] = static_cast<CornerOffset>(bytes[c]);
+    if (is_offset(offsets[c], *header.periodic) && (c % size != 0 || offsets[c] == kNoOffset)) {
+      continue;
+    }
+    throw BadInput(where, fmt::format("an offset of a corner is {}, which is none; the file is "
+                                      "corrupt, make it again",
+                                      static_cast<int>(offsets[c])));
+  }
+  bytes = bytes.subspan(offsets.size());
+  return count;
+}
+
+void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers,
+                 const FileSpot& where, MeshStreamBlock& block) {
+  const std::size_t size = dimension + 1;
+  const std::size_t count = block.offsets.size() / size;
+  const std::size_t first = block.corners.size();
+  std::vector<std::uint32_t> column;
+  block.corners.resize(first + block.offsets.size());
+  for (std::size_t i = 0; i < size; ++i) {
+    columns.read(count, column);
+    for (std::size_t s = 0; s < count; ++s) {
+      if (column[s] >= numbers) {
+        throw BadInput(where, "a corner in a block is no vertex; the file is corrupt, make it again");
+      }
+      block.corners[first + s * size + i] = column[s];
+    }
+  }
+}
+
 }  // namespace
 
 SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader& header,
@@ -134,7 +214,10 @@ SpmCounts append_spm_content(std::vector<std::byte>& out, const MeshStreamHeader
   store(out.data() + begin + 4, counts.numbers);
   store(out.data() + begin + 8, counts.simplices);
   set_bits(out.data() + bits, block.finalized);
-  append_corners(out, header.dimension, counts.numbers, block.corners);
+  if (header.periodic) append_offsets(out, header, block);
+  append_corners(out, header.dimension, counts.numbers,
+                 std::span(block.corners).first(block.corners.size() - block.offsets.size()));
+  if (header.periodic) append_across(out, header, block);
   append_coordinates(out, header, block.vertices);
   append_column(out, block.input_index);
   append_attribute_columns(out, header.attributes, block.attributes);
@@ -156,16 +239,22 @@ SpmCounts read_spm_content(std::span<const std::byte> content, const MeshStreamH
     fail("the numbers in a block do not fit");
   }
   const std::span<const std::byte> bits = content.first(bits_size);
-  const std::span<const std::byte> columns_bytes =
-      read_corners(content.subspan(bits_size), header.dimension, counts.numbers, counts.simplices,
-                   block.corners, where);
+  content = content.subspan(bits_size);
+  std::uint32_t across = 0;
+  block.offsets.clear();
+  if (header.periodic) {
+    across = read_offsets(content, header, counts.simplices, where, block.offsets);
+  }
+  content = read_corners(content, header.dimension, counts.numbers, counts.simplices - across,
+                         block.corners, where);
   block.finalized.clear();
   for (std::uint32_t number = 0; number < counts.numbers; ++number) {
     if (((bits[number / 8] >> (number % 8)) & std::byte{1}) != std::byte{0}) {
       block.finalized.push_back(number);
     }
   }
-  ColumnReader columns(columns_bytes, where);
+  ColumnReader columns(content, where);
+  if (header.periodic) read_across(columns, header.dimension, counts.numbers, where, block);
   read_coordinates(columns, header, counts.vertices, where, block.vertices);
   columns.read(header.has_input_index ? counts.vertices : 0, block.input_index);
   block.attributes.clear();

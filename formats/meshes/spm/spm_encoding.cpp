@@ -17,16 +17,31 @@ void append_value(std::vector<std::byte>& out, const T& value) {
   store(out.data() + at, value);
 }
 
+std::uint32_t version_of(const MeshStreamHeader& header) {
+  if (header.periodic) return kSpmPeriodicVersion;
+  return header.attributes.empty() ? kSpmVersion : kSpmAttributesVersion;
+}
+
+std::uint32_t periodic_flags(const MeshStreamHeader& header) {
+  if (!header.periodic) return 0;
+  std::uint32_t flags = header.attributes.empty() ? 0 : kSpmHasAttributes;
+  for (int k = 0; k < 3; ++k) {
+    if (k < header.dimension && header.periodic->periodic[k]) flags |= kSpmPeriodicX << k;
+  }
+  return flags;
+}
+
 }  // namespace
 
 std::vector<std::byte> spm_head(const MeshStreamHeader& header) {
   const bool has_extent = header.extent && !header.extent->empty();
   std::vector<std::byte> content;
-  append_value(content, header.attributes.empty() ? kSpmVersion : kSpmAttributesVersion);
+  append_value(content, version_of(header));
   append_value(content, static_cast<std::uint32_t>(header.dimension));
   append_value(content, (header.lattice ? kSpmHasLattice : 0) |
                             (header.points ? kSpmHasPoints : 0) | (has_extent ? kSpmHasExtent : 0) |
-                            (header.has_input_index ? kSpmHasInputIndex : 0));
+                            (header.has_input_index ? kSpmHasInputIndex : 0) |
+                            periodic_flags(header));
   if (header.lattice) {
     append_value(content, header.lattice->scale);
     append_value(content, header.lattice->offset);
@@ -35,6 +50,10 @@ std::vector<std::byte> spm_head(const MeshStreamHeader& header) {
   if (has_extent) {
     append_value(content, header.extent->lo);
     append_value(content, header.extent->hi);
+  }
+  if (header.periodic) {
+    append_value(content, header.periodic->box.low);
+    append_value(content, header.periodic->box.high);
   }
   if (!header.attributes.empty()) append_attribute_list(content, header.attributes);
   const std::span<const std::byte> crs = as_bytes_of(header.crs);

@@ -19,6 +19,7 @@ constinit const MeshFormat kSpmMesh = {
     .most_dimension = 6,
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
+    .holds_offsets = true,
     .stands_in_parts = true,
     .has_totals = true,
     .recognises = [](std::string_view text) { return text.starts_with(kSpmMagic); },

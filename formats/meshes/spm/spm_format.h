@@ -14,6 +14,7 @@ extern const MeshFormat kSpmMesh;
 inline constexpr std::string_view kSpmMagic = "SPWMESH\n";
 inline constexpr std::uint32_t kSpmVersion = 1;
 inline constexpr std::uint32_t kSpmAttributesVersion = 2;  ///< vertices carry attributes
+inline constexpr std::uint32_t kSpmPeriodicVersion = 3;    ///< there is a periodic box
 
 /// Kinds of blocks.
 inline constexpr std::uint32_t kSpmHeader = 1;
@@ -26,5 +27,9 @@ inline constexpr std::uint32_t kSpmHasLattice = 1;
 inline constexpr std::uint32_t kSpmHasPoints = 2;
 inline constexpr std::uint32_t kSpmHasExtent = 4;
 inline constexpr std::uint32_t kSpmHasInputIndex = 8;
+/// Followed by one bit more for each of x, y and z that is periodic.
+inline constexpr std::uint32_t kSpmPeriodicX = 16;
+/// Of a periodic mesh; in others the version tells.
+inline constexpr std::uint32_t kSpmHasAttributes = 128;
 
 }  // namespace spillway::formats

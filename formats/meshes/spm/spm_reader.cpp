@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "formats/blocks/block_stream.h"
@@ -26,7 +27,7 @@ class SpmReader : public MeshStreamReader {
             std::move(source),
             {.name = "spm",
              .magic = kSpmMagic,
-             .version = kSpmAttributesVersion,
+             .version = kSpmPeriodicVersion,
              .contents = "mesh",
              .oldest_version = kSpmVersion},
             [this] { return fmt::format("{} vertices and {} simplices", vertices_, simplices_); }) {
@@ -67,8 +68,9 @@ class SpmReader : public MeshStreamReader {
     header_.dimension = static_cast<int>(dimension);
     if (!is_dimension(header_.dimension)) stream_.fail("the dimension is none of 2 to 6");
     const auto flags = stream_.take<std::uint32_t>();
+    constexpr std::uint32_t kPeriodic = 7 * kSpmPeriodicX;
     constexpr std::uint32_t kKnown =
-        kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex;
+        kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex | kPeriodic | kSpmHasAttributes;
     if ((flags & ~kKnown) != 0) stream_.fail("unknown flags are set");
     header_.has_input_index = (flags & kSpmHasInputIndex) != 0;
     if ((flags & kSpmHasLattice) != 0) {
@@ -78,7 +80,13 @@ class SpmReader : public MeshStreamReader {
     }
     if ((flags & kSpmHasPoints) != 0) header_.points = stream_.take<std::uint64_t>();
     if ((flags & kSpmHasExtent) != 0) header_.extent = stream_.take_extent();
-    if (version == kSpmAttributesVersion) header_.attributes = take_attribute_list(stream_);
+    if (((flags & (kPeriodic | kSpmHasAttributes)) != 0) != (version == kSpmPeriodicVersion)) {
+      stream_.fail("the version and the flags of a periodic mesh do not fit");
+    }
+    if (version == kSpmPeriodicVersion) parse_box(flags);
+    if (version == kSpmAttributesVersion || (flags & kSpmHasAttributes) != 0) {
+      header_.attributes = take_attribute_list(stream_);
+    }
     if (!has_further_coordinates(header_.attributes, header_.dimension)) {
       stream_.fail("the coordinates beyond z are missing among the attributes");
     }
@@ -86,6 +94,19 @@ class SpmReader : public MeshStreamReader {
       stream_.fail("there is a lattice, but coordinates beyond z are on none");
     }
     header_.crs = as_text(stream_.left());
+  }
+
+  void parse_box(std::uint32_t flags) {
+    PeriodicBox& box = header_.periodic.emplace();
+    box.box.low = stream_.take<std::array<double, 3>>();
+    box.box.high = stream_.take<std::array<double, 3>>();
+    for (int k = 0; k < 3; ++k) {
+      box.periodic[k] = (flags & kSpmPeriodicX << k) != 0;
+      if (box.periodic[k] && (k >= header_.dimension || header_.dimension > 3 ||
+                              !(box.period(k) > 0) || !std::isfinite(box.period(k)))) {
+        stream_.fail("the periodic box is not one of these dimensions");
+      }
+    }
   }
 
   void parse_imported(std::vector<std::uint64_t>& imported) {

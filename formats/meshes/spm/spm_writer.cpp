@@ -96,6 +96,7 @@ class SpmWriter : public MeshStreamWriter {
     release(block.input_index);
     release(block.attributes);
     release(block.corners);
+    release(block.offsets);
     release(block.finalized);
   }
 

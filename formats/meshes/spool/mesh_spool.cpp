@@ -161,10 +161,15 @@ void MeshSpool::copy_to(MeshWriter& writer) const {
   const std::unique_ptr<MeshStreamReader> for_simplices = open();
   std::vector<std::uint64_t> corners;
   std::uint64_t first = 0;
+  std::uint64_t written = 0;
   while (for_simplices->read(block)) {
     corners.clear();
     append_stream_numbers(block, first, corners);
     writer.write_simplices(corners);
+    written += corners.size();
+    if (!block.offsets.empty()) {
+      writer.write_offsets(written - block.offsets.size(), block.offsets);
+    }
     first += block.vertices.size();
   }
 }

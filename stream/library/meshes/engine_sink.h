@@ -60,11 +60,12 @@ void tell_lost_layers(const VectorFormat& format, const std::string& path, const
 class EngineSink : public RunSink {
  public:
   /// Returns where blocks go. That lives as long as the sink. Throws Failure(kInvalidArgument) if it
-  /// was called before.
+  /// was called before, and as check_periodic().
   BlockSink& start(const MeshStart& start) {
     if (std::exchange(is_used_, true)) {
       throw InvalidArgument("a sink takes one mesh, and this one has had its own");
     }
+    if (start.header.periodic) check_periodic();
     return open(start);
   }
 
@@ -88,6 +89,13 @@ class EngineSink : public RunSink {
   [[nodiscard]] virtual bool tells_hash() const { return false; }
   /// By how many of so many threads it can be fed at a time.
   [[nodiscard]] virtual unsigned feeding_threads(unsigned threads) const { return threads; }
+  /// Whether begin_again() takes all blocks back.
+  [[nodiscard]] virtual bool can_begin_again() const { return false; }
+  /// Throws Failure(kInvalidArgument) unless it holds simplices that cross the sides of a periodic
+  /// box.
+  virtual void check_periodic() const {
+    throw InvalidArgument("this output cannot be made of a periodic triangulation: make a mesh");
+  }
   /// Whether it is something else than a mesh, which must have a simplex then.
   [[nodiscard]] virtual bool is_product() const { return true; }
 

@@ -163,8 +163,22 @@ bool MeshFile::goes_on() const {
          target_.format == &kSmaMesh;
 }
 
+bool MeshFile::can_begin_again() const { return tiling_ || can_be_tried(target_.path); }
+
+void MeshFile::check_periodic() const {
+  if (tiling_) {
+    throw InvalidArgument("a periodic mesh is not written in tiles or clipped: write one file");
+  }
+  if (target_.format->holds_offsets) return;
+  throw InvalidArgument(
+      fmt::format("{} cannot hold a periodic mesh, whose triangles cross the sides of the box; "
+                  "choose spm, npy or vtu",
+                  target_.format->title),
+      {.file = target_.path});
+}
+
 BlockSink* MeshFile::begin_again() {
-  if (!tiling_ && !can_be_tried(target_.path)) return nullptr;
+  if (!can_begin_again()) return nullptr;
   header_.extent.reset();  // headers of points have told it
   return &open_writer();
 }

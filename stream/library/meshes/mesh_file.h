@@ -46,6 +46,8 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   [[nodiscard]] unsigned feeding_threads(unsigned /*threads*/) const override { return 1; }
   /// What has left through a pipe is gone.
   BlockSink* begin_again() override;
+  [[nodiscard]] bool can_begin_again() const override;
+  void check_periodic() const override;
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
   void identify(RunIdentity& identity) const override;
   [[nodiscard]] bool goes_on() const override;

@@ -58,6 +58,7 @@ void MeshInMemory::begin(const MeshHeader& header) {
   vertices_.clear();
   input_index_.clear();
   corners_.clear();
+  offsets_.clear();
   attributes_ = AttributeColumns(header.attributes);
 }
 
@@ -65,6 +66,7 @@ void MeshInMemory::write(const MeshBlock& block) {
   append(vertices_, block.vertices);
   append(input_index_, block.input_index);
   append(corners_, block.corners);
+  append(offsets_, block.offsets);
   attributes_.append(block.attributes);
 }
 

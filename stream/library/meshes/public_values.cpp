@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "formats/meshes/common/mesh_block.h"
@@ -14,6 +16,7 @@
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
 #include "src/geometry/lattice_check.h"
+#include "src/geometry/torus.h"
 #include "stream/library/points/attribute_records.h"
 #include "stream/library/points/public_points.h"
 
@@ -29,6 +32,7 @@ MeshHeader public_header(const MeshStreamHeader& header) {
   }
   told.crs = header.crs;
   told.lattice = public_lattice(header.lattice);
+  told.periodic = header.periodic;
   told.attributes = header.attributes.attributes();
   return told;
 }
@@ -41,6 +45,10 @@ MeshStreamHeader stream_header(const MeshHeader& header) {
   stream.extent = told_box(header.extent, "a mesh");
   stream.crs = header.crs;
   stream.lattice = checked_lattice(header.lattice);
+  if (header.periodic) {
+    static_cast<void>(Torus(*header.periodic, std::min(header.dimension, 3)));
+    stream.periodic = header.periodic;
+  }
   stream.attributes = checked_attributes(header.attributes);
   return stream;
 }
@@ -50,11 +58,49 @@ std::optional<Box<3>> extent_of_blocks(const MeshStreamHeader& header) {
   return nearest_integers(*header.lattice, *header.extent);
 }
 
+namespace {
+
+/// Of all corners, a number for each axis.
+std::vector<std::int8_t> public_offsets(const MeshStreamBlock& block, int dimension) {
+  const std::size_t axes = static_cast<std::size_t>(dimension);
+  std::vector<std::int8_t> offsets((block.corners.size() - block.offsets.size()) * axes);
+  for (const CornerOffset offset : block.offsets) {
+    for (int k = 0; k < dimension; ++k) {
+      offsets.push_back(static_cast<std::int8_t>(periods_along(offset, k)));
+    }
+  }
+  return offsets;
+}
+
+std::vector<CornerOffset> stream_offsets(const MeshBlock& block, const MeshStreamHeader& header) {
+  const std::size_t axes = static_cast<std::size_t>(header.dimension);
+  if (block.offsets.size() != (header.periodic ? block.corners.size() * axes : 0)) {
+    throw InvalidArgument(fmt::format("a block has {} corners, but {} offsets",
+                                      block.corners.size(), block.offsets.size()));
+  }
+  std::vector<CornerOffset> offsets;
+  for (std::size_t i = 0; i < block.offsets.size(); i += axes) {
+    const std::span<const std::int8_t> periods = std::span(block.offsets).subspan(i, axes);
+    for (std::size_t k = 0; k < axes; ++k) {
+      const int most = header.periodic->periodic[k] ? 1 : 0;
+      if (std::abs(periods[k]) > most) {
+        throw InvalidArgument(fmt::format("a corner has the offset {} along {}, beyond {}",
+                                          periods[k], "xyz"[k], most));
+      }
+    }
+    offsets.push_back(corner_offset(periods));
+  }
+  return offsets;
+}
+
+}  // namespace
+
 MeshBlock public_block(const MeshStreamHeader& header, MeshStreamBlock&& block,
                        std::uint64_t first_vertex) {
   MeshBlock told;
   told.first_vertex = first_vertex;
   append_stream_numbers(block, first_vertex, told.corners);
+  if (header.periodic) told.offsets = public_offsets(block, header.dimension);
   told.finalized.reserve(block.finalized.size());
   const std::size_t own = block.vertices.size();
   for (const std::uint32_t vertex : block.finalized) {

@@ -1,0 +1,64 @@
+#pragma once
+// Simplices of a periodic triangulation: which of all copies of one stands for it.
+
+#include <array>
+
+#include "src/geometry/point.h"
+#include "src/geometry/torus.h"
+
+namespace spillway::geometry {
+
+/// The corners of a simplex in the order of their coordinates (x, then y, then z), which is the same
+/// for all copies of it.
+template <int D>
+struct SortedCorners {
+  std::array<int, D + 1> order;  ///< places of the corners, sorted
+  bool odd;                      ///< whether an odd number of swaps sorts them
+
+  explicit SortedCorners(const std::array<Point<D>, D + 1>& corners) : odd(false) {
+    for (int i = 0; i <= D; ++i) order[i] = i;
+    for (int last = D; last > 0; --last) {
+      for (int i = 0; i < last; ++i) {
+        if (!(corners[order[i + 1]] < corners[order[i]])) continue;
+        std::swap(order[i], order[i + 1]);
+        odd = !odd;
+      }
+    }
+  }
+};
+
+/// Where a copy of a simplex lies. Of all copies of one, exactly one has its centre in the box.
+template <int D>
+struct SimplexPlace {
+  Periods<D> periods;  ///< in which copy of the box its centre lies
+  /// Of its circumsphere, within 2^-40 of the radius; or, where the sphere is too large for that to
+  /// tell copies apart, the middle of the box around the corners.
+  Point<D> centre;
+  double radius;  ///< not below the true one; infinite if `centre` is that middle
+
+  [[nodiscard]] bool stands_for_all() const { return periods == Periods<D>{}; }
+};
+
+/// Computed from differences of corners, so that copies agree to the last bit.
+template <int D>
+SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
+                              const SortedCorners<D>& sorted);
+
+/// Whether the middle of the box around some corners lies in the torus' box: true of one of all
+/// copies.
+template <int D>
+bool has_middle_inside(const Torus& torus, const std::array<Point<D>, D>& facet);
+
+/// How long the box around the corners is along an axis.
+template <int D>
+double reach(const std::array<Point<D>, D + 1>& corners, int axis) {
+  double low = corners[0][axis];
+  double high = low;
+  for (int i = 1; i <= D; ++i) {
+    low = corners[i][axis] < low ? corners[i][axis] : low;
+    high = corners[i][axis] > high ? corners[i][axis] : high;
+  }
+  return high - low;
+}
+
+}  // namespace spillway::geometry

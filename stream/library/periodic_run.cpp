@@ -1,0 +1,224 @@
+#include "stream/library/periodic_run.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "formats/meshes/spool/mesh_spool.h"
+#include "src/error.h"
+#include "src/parallel/parallel.h"
+#include "stream/ground/repeated_points.h"
+#include "stream/periodic/margin_survey.h"
+#include "stream/periodic/periodic_blocks.h"
+#include "stream/periodic/periodic_points.h"
+#include "stream/source/joined_inputs.h"
+
+namespace spillway::stream {
+namespace {
+
+constexpr double kWidest = std::numeric_limits<double>::infinity();
+
+/// A margin that was too narrow is made so many times wider.
+constexpr double kWiden = 1.6;
+
+/// Pieces under way at a time, for each thread and one more.
+constexpr std::size_t kPiecesPerThread = 2;
+
+bool can_read_again(const RunPoints& points) {
+  return points.files != nullptr && points.files->any_order() && !points.files->thins();
+}
+
+Torus torus_of(const RunPoints& points, const TriangulateOptions& options) {
+  const std::optional<IntegerLattice>& lattice = points.stream->lattice();
+  return lattice ? Torus(*options.periodic, options.dimension, *lattice)
+                 : Torus(*options.periodic, options.dimension);
+}
+
+class PeriodicRun {
+ public:
+  explicit PeriodicRun(Run& run)
+      : run_(run),
+        torus_(torus_of(run.points, run.engine.asked)),
+        has_input_index_(std::exchange(run.engine.asked.input_index, true)),
+        repeated_(*run.points.stream, can_read_again(run.points), *run.scratch,
+                  RepeatedIndex::kInput),
+        points_(repeated_, torus_) {
+    run.points.stream = &points_;
+    run.points.extent.reset();
+  }
+
+  Report run() {
+    const MeshStart start = this->start();
+    const bool direct = run_.sink.can_begin_again();
+    BlockSink* sink = &run_.sink.start(start);
+    double margin = survey();
+    for (bool first = true;; first = false) {
+      domain_.emplace(torus_, margin);
+      points_.set_margin(margin);
+      points_.forget_counts();
+      repeated_.repeat();
+      run_.engine.periodic = domain_;
+      if (!first && direct) sink = run_.sink.begin_again();
+      std::optional<Report> report = direct ? to_sink(*sink) : by_spool(*sink);
+      if (report) {
+        run_.sink.complete(run_.watch, *report);
+        return std::move(*report);
+      }
+      margin *= kWiden;
+    }
+  }
+
+ private:
+  /// What the header of the mesh says.
+  [[nodiscard]] MeshStart start() const {
+    MeshStart start = run_.start();
+    start.header.has_input_index = has_input_index_;
+    start.header.points = run_.points.records;
+    start.header.periodic =
+        run_.points.stream->lattice() ? run_.engine.asked.periodic : torus_.box();
+    return start;
+  }
+
+  /// Reads all points, and returns a margin for copies of them.
+  double survey() {
+    struct Slot {
+      SourcePiece piece;
+      PointBlock block;
+    };
+    MarginSurvey survey(torus_);
+    std::uint64_t count = 0;
+    const unsigned threads = run_.context.threads();
+    std::vector<Slot> slots(kPiecesPerThread * threads + 1);
+    const auto fetch = [&](std::size_t slot) {
+      run_.watch.tell(points_.points_read(), points_.fraction_read());
+      return points_.fetch(slots[slot].piece);
+    };
+    const auto decode = [&](std::size_t slot) {
+      points_.decode(slots[slot].piece, slots[slot].block);
+    };
+    const auto take = [&](std::size_t slot) {
+      if (torus_.closed()) survey.add(slots[slot].block.points);
+      count += slots[slot].block.size();
+    };
+    const std::vector<PipelineStep> steps = {{.in_order = false, .work = decode},
+                                             {.in_order = true, .work = take}};
+    run_.watch.begin("survey", "points");
+    with_threads(threads, [&] { run_pipeline(slots.size(), fetch, steps); });
+    run_.watch.end(count);
+    if (count == 0) refuse_empty_input(points_.counts());
+    return torus_.closed() ? survey.margin() : kWidest;
+  }
+
+  std::optional<Report> to_sink(BlockSink& sink) {
+    PeriodicBlocks blocks(sink, *domain_, has_input_index_, run_.budget);
+    std::optional<Report> report = triangulate(blocks);
+    if (report) end(blocks, *report);
+    return report;
+  }
+
+  /// For a sink that cannot take back what it got.
+  std::optional<Report> by_spool(BlockSink& sink) {
+    MeshStreamHeader header = run_.start().header;
+    MeshSpool spool(header, "the periodic mesh", *run_.scratch);
+    std::optional<Report> report = triangulate(spool);
+    if (!report) return report;
+    spool.finish(report->mesh);
+    PeriodicBlocks blocks(sink, *domain_, has_input_index_, run_.budget);
+    const auto reader = spool.open();
+    MeshStreamBlock block;
+    while (reader->read(block)) {
+      run_.watch.check();
+      blocks.absorb(block);
+      blocks.write(std::move(block));
+      block = {};
+    }
+    end(blocks, *report);
+    return report;
+  }
+
+  /// Nothing if the margin was too narrow.
+  std::optional<Report> triangulate(BlockSink& blocks) {
+    TorusProof proof;
+    RunSetup setup = run_.setup();
+    setup.torus = &proof;
+    Report report = triangulate_to(blocks, setup, run_);
+    if (!proof.closed() || proof.beyond_margin > 0) {
+      if (!domain_->widest()) {
+        tell_margin("is too narrow: once more with a wider one");
+        return std::nullopt;
+      }
+      refuse_few_points(proof);
+      throw std::logic_error("a periodic mesh is not closed: a fault of the program");
+    }
+    refuse_few_points(proof);
+    tell_margin("was enough");
+    return report;
+  }
+
+  void tell_margin(const char* what) const {
+    if (!run_.context.options().detail) return;
+    double widest = 0;
+    for (int k = 0; k < torus_.dimension(); ++k) {
+      if (!torus_.periodic(k)) continue;
+      widest = std::max(widest, domain_->margin(k) / torus_.period(k));
+    }
+    run_.context.options().detail(
+        fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
+  }
+
+  /// The simplices of a triangulation are told apart by their vertices if none is half a period
+  /// long along any axis (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
+  void refuse_few_points(const TorusProof& proof) const {
+    if (!torus_.closed()) return;
+    for (int k = 0; k < torus_.dimension(); ++k) {
+      const double share = proof.reach[k] / torus_.period(k);
+      if (share < 0.5) continue;
+      throw Failure(
+          fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of "
+                      "the period long along {}, and all must be shorter than half of it; add "
+                      "points there, or repeat points and box two or three times along that axis",
+                      torus_.dimension() == 2 ? "triangle" : "tetrahedron", share, "xyz"[k]),
+          ErrorCode::kDegenerateInput);
+    }
+  }
+
+  void end(PeriodicBlocks& blocks, Report& report) const {
+    blocks.finish(report.mesh);
+    report.mesh.vertices = blocks.vertices();
+    report.mesh.points = report.points.kept();
+    report.mesh.duplicates = report.mesh.points - report.mesh.vertices;
+  }
+
+  Run& run_;
+  const Torus torus_;
+  const bool has_input_index_;
+  RepeatedPoints repeated_;
+  PeriodicPoints points_;
+  std::optional<PeriodicDomain> domain_;
+};
+
+}  // namespace
+
+void check_periodic(const TriangulateOptions& options, const EngineSink& sink) {
+  if (options.dimension > 3) {
+    throw InvalidArgument(fmt::format(
+        "periodic boxes have 2 or 3 dimensions, not {}", options.dimension));
+  }
+  if (options.max_edge) {
+    throw InvalidArgument(
+        "a periodic triangulation has no long edges to leave out: choose either a periodic box or "
+        "a longest edge");
+  }
+  if (!options.resume_folder.empty()) {
+    throw InvalidArgument("a periodic run cannot go on: leave the folder to resume out");
+  }
+  sink.check_periodic();
+}
+
+Report triangulate_periodically(Run& run) { return PeriodicRun(run).run(); }
+
+}  // namespace spillway::stream

@@ -1,0 +1,82 @@
+#include "stream/periodic/periodic_points.h"
+
+#include <array>
+#include <cmath>
+
+namespace spillway::stream {
+namespace {
+
+/// The copies of a point along one axis, the point itself first.
+struct CopiesAlong {
+  std::array<double, 3> coordinates;
+  int count = 1;
+};
+
+CopiesAlong copies_along(const PeriodicDomain& domain, int axis, double coordinate) {
+  CopiesAlong copies{{coordinate}};
+  const Torus& torus = domain.torus();
+  if (axis >= torus.dimension() || !torus.periodic(axis)) return copies;
+  const double margin = domain.margin(axis);
+  for (const int periods : {1, -1}) {
+    const double copy = torus.moved(axis, coordinate, periods);
+    if (copy < torus.low(axis) - margin || copy > torus.high(axis) + margin) continue;
+    copies.coordinates[copies.count++] = copy;
+  }
+  return copies;
+}
+
+}  // namespace
+
+void PeriodicPoints::decode(SourcePiece& piece, PointBlock& block) {
+  points_.decode(piece, block);
+  std::uint64_t wrapped = 0;
+  std::uint64_t rounded = 0;
+  for (LatticePoint& point : block.points) {
+    const Wrapping wrapping = torus_.wrap(point);
+    wrapped += wrapping.moved ? 1 : 0;
+    rounded += wrapping.rounded ? 1 : 0;
+  }
+  wrapped_ += wrapped;
+  rounded_ += rounded;
+  if (domain_) append_copies(block);
+}
+
+void PeriodicPoints::append_copies(PointBlock& block) const {
+  const std::size_t count = block.size();
+  const std::size_t record_size = block.record_size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const LatticePoint point = block.points[i];
+    if (!domain_->has_copies(point)) continue;
+    const CopiesAlong x = copies_along(*domain_, 0, point[0]);
+    const CopiesAlong y = copies_along(*domain_, 1, point[1]);
+    const CopiesAlong z = copies_along(*domain_, 2, point[2]);
+    for (int n = 1; n < x.count * y.count * z.count; ++n) {
+      block.points.emplace_back(x.coordinates[n % x.count], y.coordinates[n / x.count % y.count],
+                                z.coordinates[n / (x.count * y.count)]);
+      if (!block.index.empty()) block.index.push_back(block.index[i]);
+      if (record_size == 0) continue;
+      block.attributes.resize(block.attributes.size() + record_size);
+      std::memcpy(&block.attributes[block.attributes.size() - record_size],
+                  &block.attributes[i * record_size], record_size);
+    }
+  }
+}
+
+std::optional<std::uint64_t> PeriodicPoints::expected() const {
+  const std::optional<std::uint64_t> points = points_.expected();
+  if (!points || !domain_) return points;
+  double copies = 1;
+  for (int k = 0; k < torus_.dimension(); ++k) {
+    if (torus_.periodic(k)) copies *= 1 + 2 * domain_->margin(k) / torus_.period(k);
+  }
+  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(*points) * copies));
+}
+
+PointCounts PeriodicPoints::counts() const {
+  PointCounts counts = points_.counts();
+  counts.wrapped = wrapped_;
+  counts.rounded = rounded_;
+  return counts;
+}
+
+}  // namespace spillway::stream
