@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/determinants.h"
+#include "src/geometry/predicates.h"
 
 namespace spillway::geometry {
 namespace {
 
-/// Centres of spheres up to this many periods are known to far less than a period.
+/// Centres of larger spheres, in periods, are computed exactly: they may lie far away along an open
+/// axis, and must be known to far less than a period along the others.
 constexpr double kLargestRadius = 1024;
 
 /// By how much a computed radius may be too small.
@@ -52,6 +53,29 @@ Periods<D> periods_of_centre(const Torus& torus, const Point<D>& lowest, const P
   return periods;
 }
 
+/// Whether the facet's plane is along all periodic axes.
+template <int D>
+bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) {
+  std::array<int, D> open{};
+  int count = 0;
+  for (int k = 0; k < D; ++k) {
+    if (!torus.periodic(k)) open[count++] = k;
+  }
+  if (count == 1) {
+    return std::all_of(facet.begin(), facet.end(), [&](const Point<D>& point) {
+      return point[open[0]] == facet[0][open[0]];
+    });
+  }
+  if constexpr (D == 3) {
+    if (count == 2) {
+      std::array<Point<2>, 3> seen;
+      for (int i = 0; i < 3; ++i) seen[i] = {facet[i][open[0]], facet[i][open[1]]};
+      return orientation<2>(seen) == 0;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 template <int D>
@@ -64,8 +88,7 @@ SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D +
   Point<D> centre = circumcentre<D>(differences);
   place.radius = std::sqrt(squared_length(centre)) * kRoundedUp;
   if (!(place.radius <= kLargestRadius * torus.shortest_period())) {
-    centre = middle_of<D>(differences);
-    place.radius = std::numeric_limits<double>::infinity();
+    centre = exact_circumcentre<D>(differences);
   }
   place.periods = periods_of_centre<D>(torus, lowest, centre);
   for (int k = 0; k < D; ++k) place.centre[k] = lowest[k] + centre[k];
@@ -73,7 +96,8 @@ SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D +
 }
 
 template <int D>
-bool has_middle_inside(const Torus& torus, const std::array<Point<D>, D>& facet) {
+bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet) {
+  if (!is_along_periods<D>(torus, facet)) return false;
   const Point<D>& lowest = *std::min_element(facet.begin(), facet.end());
   std::array<Point<D>, D> differences;
   for (int i = 0; i < D; ++i) differences[i] = difference<D>(facet[i], lowest);
@@ -83,7 +107,7 @@ bool has_middle_inside(const Torus& torus, const std::array<Point<D>, D>& facet)
 #define SPILLWAY_INSTANTIATE(D)                                                              \
   template SimplexPlace<D> place_simplex<D>(                                                 \
       const Torus&, const std::array<Point<D>, D + 1>&, const SortedCorners<D>&);            \
-  template bool has_middle_inside<D>(const Torus&, const std::array<Point<D>, D>&);
+  template bool is_chosen_hull_facet<D>(const Torus&, const std::array<Point<D>, D>&);
 SPILLWAY_INSTANTIATE(2)
 SPILLWAY_INSTANTIATE(3)
 #undef SPILLWAY_INSTANTIATE

@@ -31,10 +31,8 @@ struct SortedCorners {
 template <int D>
 struct SimplexPlace {
   Periods<D> periods;  ///< in which copy of the box its centre lies
-  /// Of its circumsphere, within 2^-40 of the radius; or, where the sphere is too large for that to
-  /// tell copies apart, the middle of the box around the corners.
-  Point<D> centre;
-  double radius;  ///< not below the true one; infinite if `centre` is that middle
+  Point<D> centre;      ///< of its circumsphere, within 2^-30 of a period along periodic axes
+  double radius;        ///< not below the true one
 
   [[nodiscard]] bool stands_for_all() const { return periods == Periods<D>{}; }
 };
@@ -44,10 +42,11 @@ template <int D>
 SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
                               const SortedCorners<D>& sorted);
 
-/// Whether the middle of the box around some corners lies in the torus' box: true of one of all
-/// copies.
+/// Whether a facet of the hull of some copies is one of the hull of all copies, as its plane is
+/// along all periodic axes, and stands for all copies of it: the middle of the box around it lies in
+/// the torus' box.
 template <int D>
-bool has_middle_inside(const Torus& torus, const std::array<Point<D>, D>& facet);
+bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet);
 
 /// How long the box around the corners is along an axis.
 template <int D>

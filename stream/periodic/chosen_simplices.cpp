@@ -72,7 +72,6 @@ bool ChosenSimplices<D>::choose(const Corners& corners) {
 
 template <int D>
 bool ChosenSimplices<D>::choose_infinite(const Corners& corners) {
-  if (domain_.torus().closed()) return false;
   // Sorted, with the infinite vertex behind all others.
   std::array<VertexId, D> facet;
   std::array<Point<D>, D> points;
@@ -92,7 +91,7 @@ bool ChosenSimplices<D>::choose_infinite(const Corners& corners) {
     }
   }
   for (int i = 0; i < D; ++i) points[i] = points_[facet[i]];
-  if (!has_middle_inside<D>(domain_.torus(), points)) return false;
+  if (!is_chosen_hull_facet<D>(domain_.torus(), points)) return false;
   add_facet(facet, odd != (D % 2 != 0));
   return true;
 }
