@@ -107,10 +107,11 @@ PeriodicBox Torus::box() const {
 
 void Torus::wrap(const Axis& axis, double& coordinate, Wrapping& result) {
   const double high = axis.low + axis.period;
-  // Numbers farther away than that are multiples of it.
-  const bool may_lie_between = std::abs(coordinate) < kExact * axis.step;
+  // Sums of such a number with others up to it are rounded to the step; numbers beyond it are
+  // multiples of the step.
+  const double rounder = std::copysign(kExact / 2 * axis.step, coordinate);
   const double on_step =
-      may_lie_between ? std::nearbyint(coordinate / axis.step) * axis.step : coordinate;
+      std::abs(coordinate) < std::abs(rounder) ? (coordinate + rounder) - rounder : coordinate;
   if (on_step != coordinate) result.rounded = true;
   if (on_step >= axis.low && on_step < high) {
     if (!(coordinate >= axis.low)) result.moved = true;

@@ -76,22 +76,83 @@ bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) 
   return false;
 }
 
+/// The centre of a simplex of which the determinant of its edges is well away from 0, seen from the
+/// first corner: within 2^-30 of its distance. False for others.
+template <int D>
+bool plain_centre(const std::array<Point<D>, D + 1>& corners, Point<D>& centre) {
+  constexpr double kWellAway = 0x1p-12;
+  std::array<Point<D>, D> edges;
+  double size = 0;
+  std::array<double, D> squares;
+  for (int i = 0; i < D; ++i) {
+    edges[i] = difference<D>(corners[i + 1], corners[0]);
+    squares[i] = squared_length(edges[i]);
+    size = std::max(size, squares[i]);
+  }
+  if constexpr (D == 2) {
+    const double det = edges[0][0] * edges[1][1] - edges[0][1] * edges[1][0];
+    if (!(std::abs(det) > kWellAway * size)) return false;
+    const double scale = 0.5 / det;
+    centre = {(squares[0] * edges[1][1] - squares[1] * edges[0][1]) * scale,
+              (squares[1] * edges[0][0] - squares[0] * edges[1][0]) * scale};
+  } else {
+    const auto cross = [](const Point<3>& a, const Point<3>& b) {
+      return Point<3>{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                      a[0] * b[1] - a[1] * b[0]};
+    };
+    const Point<3> bc = cross(edges[1], edges[2]);
+    const Point<3> ca = cross(edges[2], edges[0]);
+    const Point<3> ab = cross(edges[0], edges[1]);
+    const double det = edges[0][0] * bc[0] + edges[0][1] * bc[1] + edges[0][2] * bc[2];
+    if (!(det * det > kWellAway * kWellAway * size * size * size)) return false;
+    const double scale = 0.5 / det;
+    for (int k = 0; k < 3; ++k) {
+      centre[k] = (squares[0] * bc[k] + squares[1] * ca[k] + squares[2] * ab[k]) * scale;
+    }
+  }
+  return true;
+}
+
+/// False if rounding might decide in which copy of the box the centre lies.
+template <int D>
+bool place_at_once(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
+                   SimplexPlace<D>& place) {
+  constexpr double kUnsure = 0x1p-20;
+  Point<D> centre;
+  if (!plain_centre<D>(corners, centre)) return false;
+  place.radius = std::sqrt(squared_length(centre)) * kRoundedUp;
+  if (!(place.radius <= torus.shortest_period())) return false;
+  for (int k = 0; k < D; ++k) {
+    place.centre[k] = corners[0][k] + centre[k];
+    place.periods[k] = 0;
+    if (!torus.periodic(k)) continue;
+    const double along = (place.centre[k] - torus.low(k)) / torus.period(k);
+    const int whole = along < 0 ? -1 : static_cast<int>(along);
+    const double beyond = along - whole;
+    if (!(along > -1 && along < 2 && beyond > kUnsure && beyond < 1 - kUnsure)) return false;
+    place.periods[k] = static_cast<std::int8_t>(whole);
+  }
+  return true;
+}
+
 }  // namespace
 
 template <int D>
-SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
-                              const SortedCorners<D>& sorted) {
-  const Point<D>& lowest = corners[sorted.order[0]];
-  std::array<Point<D>, D + 1> differences;
-  for (int i = 0; i <= D; ++i) differences[i] = difference<D>(corners[sorted.order[i]], lowest);
+SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners) {
   SimplexPlace<D> place;
+  if (place_at_once<D>(torus, corners, place)) return place;
+  // From differences in an order that all copies have, so that they agree to the last bit.
+  std::array<Point<D>, D + 1> sorted = corners;
+  std::sort(sorted.begin(), sorted.end());
+  std::array<Point<D>, D + 1> differences;
+  for (int i = 0; i <= D; ++i) differences[i] = difference<D>(sorted[i], sorted[0]);
   Point<D> centre = circumcentre<D>(differences);
   place.radius = std::sqrt(squared_length(centre)) * kRoundedUp;
   if (!(place.radius <= kLargestRadius * torus.shortest_period())) {
     centre = exact_circumcentre<D>(differences);
   }
-  place.periods = periods_of_centre<D>(torus, lowest, centre);
-  for (int k = 0; k < D; ++k) place.centre[k] = lowest[k] + centre[k];
+  place.periods = periods_of_centre<D>(torus, sorted[0], centre);
+  for (int k = 0; k < D; ++k) place.centre[k] = sorted[0][k] + centre[k];
   return place;
 }
 
@@ -105,8 +166,8 @@ bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& fac
 }
 
 #define SPILLWAY_INSTANTIATE(D)                                                              \
-  template SimplexPlace<D> place_simplex<D>(                                                 \
-      const Torus&, const std::array<Point<D>, D + 1>&, const SortedCorners<D>&);            \
+  template SimplexPlace<D> place_simplex<D>(const Torus&,                                    \
+                                            const std::array<Point<D>, D + 1>&);             \
   template bool is_chosen_hull_facet<D>(const Torus&, const std::array<Point<D>, D>&);
 SPILLWAY_INSTANTIATE(2)
 SPILLWAY_INSTANTIATE(3)

@@ -8,25 +8,6 @@
 
 namespace spillway::geometry {
 
-/// The corners of a simplex in the order of their coordinates (x, then y, then z), which is the same
-/// for all copies of it.
-template <int D>
-struct SortedCorners {
-  std::array<int, D + 1> order;  ///< places of the corners, sorted
-  bool odd;                      ///< whether an odd number of swaps sorts them
-
-  explicit SortedCorners(const std::array<Point<D>, D + 1>& corners) : odd(false) {
-    for (int i = 0; i <= D; ++i) order[i] = i;
-    for (int last = D; last > 0; --last) {
-      for (int i = 0; i < last; ++i) {
-        if (!(corners[order[i + 1]] < corners[order[i]])) continue;
-        std::swap(order[i], order[i + 1]);
-        odd = !odd;
-      }
-    }
-  }
-};
-
 /// Where a copy of a simplex lies. Of all copies of one, exactly one has its centre in the box.
 template <int D>
 struct SimplexPlace {
@@ -37,10 +18,9 @@ struct SimplexPlace {
   [[nodiscard]] bool stands_for_all() const { return periods == Periods<D>{}; }
 };
 
-/// Computed from differences of corners, so that copies agree to the last bit.
+/// All copies agree on the periods between them, however their corners are listed.
 template <int D>
-SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
-                              const SortedCorners<D>& sorted);
+SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners);
 
 /// Whether a facet of the hull of some copies is one of the hull of all copies, as its plane is
 /// along all periodic axes, and stands for all copies of it: the middle of the box around it lies in

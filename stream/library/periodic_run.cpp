@@ -146,15 +146,12 @@ class PeriodicRun {
     RunSetup setup = run_.setup();
     setup.torus = &proof;
     Report report = triangulate_to(blocks, setup, run_);
-    if (!proof.closed() || proof.beyond_margin > 0) {
-      if (!domain_->widest()) {
-        tell_margin("is too narrow: once more with a wider one");
-        return std::nullopt;
-      }
-      refuse_few_points(proof);
-      throw std::logic_error("a periodic mesh is not closed: a fault of the program");
+    if (!proof.holds()) {
+      if (domain_->widest()) refuse_few_points(proof);
+      tell_margin("is too narrow: once more with a wider one");
+      return std::nullopt;
     }
-    refuse_few_points(proof);
+    if (reaches_half(proof)) refuse_few_points(proof);
     tell_margin("was enough");
     return report;
   }
@@ -170,20 +167,32 @@ class PeriodicRun {
         fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
   }
 
+  /// Whether a simplex of a closed torus is half a period long.
+  [[nodiscard]] bool reaches_half(const TorusProof& proof) const {
+    for (int k = 0; k < torus_.dimension(); ++k) {
+      if (torus_.closed() && 2 * proof.reach[k] >= torus_.period(k)) return true;
+    }
+    return false;
+  }
+
   /// The simplices of a triangulation are told apart by their vertices if none is half a period
   /// long along any axis (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
-  void refuse_few_points(const TorusProof& proof) const {
-    if (!torus_.closed()) return;
-    for (int k = 0; k < torus_.dimension(); ++k) {
-      const double share = proof.reach[k] / torus_.period(k);
-      if (share < 0.5) continue;
-      throw Failure(
-          fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of "
-                      "the period long along {}, and all must be shorter than half of it; add "
-                      "points there, or repeat points and box two or three times along that axis",
-                      torus_.dimension() == 2 ? "triangle" : "tetrahedron", share, "xyz"[k]),
-          ErrorCode::kDegenerateInput);
+  [[noreturn]] void refuse_few_points(const TorusProof& proof) const {
+    if (!reaches_half(proof)) {
+      throw std::logic_error("a periodic mesh is not closed: a fault of the program");
     }
+    int axis = 0;
+    const auto share = [&](int k) { return proof.reach[k] / torus_.period(k); };
+    for (int k = 1; k < torus_.dimension(); ++k) {
+      if (share(k) > share(axis)) axis = k;
+    }
+    throw Failure(
+        fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of the "
+                    "period long along {}, and all must be shorter than half of it; add points "
+                    "where there are few, or repeat points and box two or three times along {}",
+                    torus_.dimension() == 2 ? "triangle" : "tetrahedron", share(axis), "xyz"[axis],
+                    "xyz"[axis]),
+        ErrorCode::kDegenerateInput);
   }
 
   void end(PeriodicBlocks& blocks, Report& report) const {

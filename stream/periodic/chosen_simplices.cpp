@@ -1,27 +1,67 @@
 #include "stream/periodic/chosen_simplices.h"
 
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include <spillway/detail/probing_table.h>
+#include "src/geometry/torus_simplex.h"
 
 namespace spillway::stream {
+namespace {
+
+/// The periods of an offset along each axis, so far apart that differences of offsets are those of
+/// all axes.
+std::uint32_t apart(std::uint32_t offset) {
+  const auto bits = static_cast<CornerOffset>(offset);
+  return static_cast<std::uint32_t>(periods_along(bits, 0) + 256 * periods_along(bits, 1) +
+                                    65536 * periods_along(bits, 2));
+}
+
+/// The least periods along each axis of some offsets.
+template <std::size_t Count>
+std::uint32_t least_of(const std::array<std::uint8_t, Count>& offsets) {
+  std::array<int, 3> least{2, 2, 2};
+  for (const std::uint8_t offset : offsets) {
+    for (int k = 0; k < 3; ++k) {
+      least[k] = std::min(least[k], periods_along(static_cast<CornerOffset>(offset), k));
+    }
+  }
+  return static_cast<std::uint8_t>(corner_offset(least));
+}
+
+/// Whether an odd number of swaps sorts them.
+template <std::size_t Count>
+bool sorts_oddly(const std::array<std::uint64_t, Count>& numbers) {
+  bool odd = false;
+  for (std::size_t i = 0; i < Count; ++i) {
+    for (std::size_t j = i + 1; j < Count; ++j) odd ^= numbers[i] > numbers[j];
+  }
+  return odd;
+}
+
+}  // namespace
 
 template <int D>
 ChosenSimplices<D>::ChosenSimplices(const PeriodicDomain& domain, std::vector<Point<D>> points)
-    : domain_(domain), points_(std::move(points)), deep_(points_.size()) {
+    : domain_(domain),
+      points_(std::move(points)),
+      offsets_(points_.size()),
+      prints_(points_.size()),
+      deep_(points_.size()) {
+  const Torus& torus = domain_.torus();
   Point<D> low{};
   Point<D> high{};
   for (std::size_t v = 0; v < points_.size(); ++v) {
     const Point<D>& point = points_[v];
-    deep_[v] = is_deep(point) ? 1 : 0;
-    all_deep_ &= deep_[v] != 0;
     for (int k = 0; k < D; ++k) {
       low[k] = v == 0 ? point[k] : std::min(low[k], point[k]);
       high[k] = v == 0 ? point[k] : std::max(high[k], point[k]);
     }
+    offsets_[v] = static_cast<std::uint8_t>(corner_offset(torus.template periods_of<D>(point)));
+    deep_[v] = is_deep(point) ? 1 : 0;
+    all_deep_ &= deep_[v] != 0;
   }
-  const Torus& torus = domain_.torus();
   for (int k = 0; k < D; ++k) {
     if (torus.periodic(k) && 2 * (high[k] - low[k]) >= torus.period(k)) all_near_ = false;
   }
@@ -39,74 +79,83 @@ bool ChosenSimplices<D>::is_deep(const Point<D>& point) const {
 }
 
 template <int D>
-bool ChosenSimplices<D>::choose(const Corners& corners) {
-  int deep = 0;
-  for (const VertexId v : corners) deep += deep_[v];
-  if (deep == D + 1 && all_near_) return true;
+std::uint64_t ChosenSimplices<D>::fingerprint(const Point<D>& point) const {
+  std::uint64_t print = 0;
+  for (const double coordinate : in_box(point)) {
+    // Zero has two signs.
+    print = scatter(print ^ std::bit_cast<std::uint64_t>(coordinate + 0.0));
+  }
+  return print;
+}
+
+template <int D>
+Choice ChosenSimplices<D>::choose(const Corners& corners) {
   std::array<Point<D>, D + 1> points;
-  for (int i = 0; i <= D; ++i) points[i] = points_[corners[i]];
-  if (deep == D + 1) {
-    note_reach(points);
-    return true;
+  std::uint8_t offsets = 0;
+  int deep = 0;
+  for (int i = 0; i <= D; ++i) {
+    points[i] = points_[corners[i]];
+    offsets |= offsets_[corners[i]];
+    deep += deep_[corners[i]];
   }
-  const SortedCorners<D> sorted(points);
-  const SimplexPlace<D> place = place_simplex<D>(domain_.torus(), points, sorted);
-  const bool chosen = place.stands_for_all();
-  if ((chosen || deep > 0) && reaches_beyond(place)) ++proof_.beyond_margin;
-  if (!chosen) return false;
+  if (deep <= D) {
+    const SimplexPlace<D> place = place_simplex<D>(domain_.torus(), points);
+    const bool chosen = place.stands_for_all();
+    if ((chosen || deep == D) && reaches_beyond(place)) ++proof_.beyond_margin;
+    if (!chosen) return Choice::kLeftOut;
+    add_facets(corners);
+  }
   if (!all_near_) note_reach(points);
-  for (int left_out = 0; left_out <= D; ++left_out) {
+  return offsets == 0 ? Choice::kInside : Choice::kAcross;
+}
+
+/// Of the point in the box.
+template <int D>
+std::uint64_t ChosenSimplices<D>::print_of(VertexId v) {
+  if (prints_[v] == 0) prints_[v] = fingerprint(points_[v]);
+  return prints_[v];
+}
+
+/// Those that are not all deep: both sides of others are chosen, or reach beyond the margin.
+template <int D>
+void ChosenSimplices<D>::add_facets(const Corners& corners) {
+  for (int i = 0; i <= D; ++i) {
     std::array<VertexId, D> facet;
-    int deep_here = 0;
-    for (int i = 0, n = 0; i <= D; ++i) {
-      if (i == left_out) continue;
-      facet[n++] = corners[sorted.order[i]];
-      deep_here += deep_[corners[sorted.order[i]]];
+    unsigned deep = 1;
+    for (int j = 0, n = 0; j <= D; ++j) {
+      if (j == i) continue;
+      facet[n++] = corners[j];
+      deep &= deep_[corners[j]];
     }
-    // Both sides of such a facet are chosen, or reach beyond the margin.
-    if (deep_here == D) continue;
-    add_facet(facet, sorted.odd != (left_out % 2 != 0));
+    if (deep == 0) add_facet(facet, i % 2 != 0);
   }
-  return true;
 }
 
 template <int D>
 bool ChosenSimplices<D>::choose_infinite(const Corners& corners) {
-  // Sorted, with the infinite vertex behind all others.
   std::array<VertexId, D> facet;
   std::array<Point<D>, D> points;
-  bool odd = false;
+  int infinite = 0;
   for (int i = 0, n = 0; i <= D; ++i) {
     if (corners[i] == kInfiniteVertex) {
-      odd ^= (D - i) % 2 != 0;
-    } else {
-      facet[n++] = corners[i];
+      infinite = i;
+      continue;
     }
+    points[n] = points_[corners[i]];
+    facet[n++] = corners[i];
   }
-  for (int last = D - 1; last > 0; --last) {
-    for (int i = 0; i < last; ++i) {
-      if (!(points_[facet[i + 1]] < points_[facet[i]])) continue;
-      std::swap(facet[i], facet[i + 1]);
-      odd = !odd;
-    }
-  }
-  for (int i = 0; i < D; ++i) points[i] = points_[facet[i]];
   if (!is_chosen_hull_facet<D>(domain_.torus(), points)) return false;
-  add_facet(facet, odd != (D % 2 != 0));
+  add_facet(facet, infinite % 2 != 0);
   return true;
 }
 
 template <int D>
 std::array<VertexId, D + 1> ChosenSimplices<D>::ordered(Corners corners) const {
-  const Torus& torus = domain_.torus();
-  bool all_inside = true;
   int lowest = 0;
-  for (int i = 0; i <= D; ++i) {
-    const Point<D>& point = points_[corners[i]];
-    all_inside &= torus.template periods_of<D>(point) == Periods<D>{};
-    if (point < points_[corners[lowest]]) lowest = i;
+  for (int i = 1; i <= D; ++i) {
+    if (points_[corners[i]] < points_[corners[lowest]]) lowest = i;
   }
-  if (all_inside || lowest == 0) return corners;
+  if (lowest == 0) return corners;
   std::swap(corners[0], corners[lowest]);
   const int other = lowest == D ? D - 1 : D;
   std::swap(corners[other], corners[lowest]);  // the second swap restores the orientation
@@ -128,6 +177,7 @@ void ChosenSimplices<D>::note_reach(const std::array<Point<D>, D + 1>& corners) 
   }
 }
 
+/// Whether the closed ball does.
 template <int D>
 bool ChosenSimplices<D>::reaches_beyond(const SimplexPlace<D>& place) const {
   if (domain_.widest()) return false;
@@ -142,27 +192,27 @@ bool ChosenSimplices<D>::reaches_beyond(const SimplexPlace<D>& place) const {
   return false;
 }
 
-/// By the facet's corners in their order, each by the point of the box that it is a copy of, and by
-/// the periods between it and the first corner's.
+/// A facet, and on which side of it the simplex lies: `odd` is that of the place of the corner
+/// opposite. The fingerprint is made of the points in the box that the corners are copies of, and
+/// of the periods between them; the side is told by the order of the corners' own fingerprints.
 template <int D>
 void ChosenSimplices<D>::add_facet(const std::array<VertexId, D>& facet, bool odd) {
-  const Torus& torus = domain_.torus();
-  const Periods<D> first = torus.template periods_of<D>(points_[facet[0]]);
-  std::array<std::uint64_t, 2> print{0x9E3779B97F4A7C15U, 0xD1B54A32D192ED03U};
-  const auto mix = [&print](std::uint64_t value) {
-    print[0] = scatter(print[0] ^ value);
-    print[1] = scatter(print[1] + std::rotl(value, 23));
-  };
-  for (const VertexId v : facet) {
-    const Point<D>& point = points_[v];
-    const Periods<D> periods = torus.template periods_of<D>(point);
-    for (int k = 0; k < D; ++k) {
-      // Zero has two signs.
-      mix(std::bit_cast<std::uint64_t>(torus.moved(k, point[k], -periods[k]) + 0.0));
-      mix(static_cast<std::uint64_t>(periods[k] - first[k]));
-    }
+  std::array<std::uint8_t, D> offsets;
+  std::uint8_t different = 0;
+  for (int i = 0; i < D; ++i) {
+    offsets[i] = offsets_[facet[i]];
+    different |= offsets[i] ^ offsets[0];
   }
-  for (int i = 0; i < 2; ++i) proof_.open_facets[i] += odd ? -print[i] : print[i];
+  const std::uint32_t least = apart(different == 0 ? offsets[0] : least_of(offsets));
+  std::array<std::uint64_t, D> prints;
+  std::uint64_t sum = 0;
+  for (int i = 0; i < D; ++i) {
+    const std::uint32_t difference = different == 0 ? 0 : apart(offsets[i]) - least;
+    prints[i] = scatter(print_of(facet[i]) + difference);
+    sum += prints[i];
+  }
+  const std::uint64_t print = scatter(sum);
+  proof_.open_facets += odd != sorts_oddly(prints) ? -print : print;
 }
 
 template class ChosenSimplices<2>;

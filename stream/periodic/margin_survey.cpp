@@ -11,7 +11,7 @@ namespace spillway::stream {
 namespace {
 
 /// So many points tell how densely they lie.
-constexpr std::uint64_t kEnough = 24;
+constexpr std::uint64_t kEnough = 200;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
@@ -19,7 +19,7 @@ constexpr double kUnknown = std::numeric_limits<double>::infinity();
 /// as n points have on average with a probability of about exp(-n) n^(D-1). Few of those near the
 /// sides, which are about N^((D-1)/D), have more than this.
 double points_in_largest_sphere(std::uint64_t points, int dimension) {
-  return 11 + std::log(static_cast<double>(points)) * (dimension - 1) / dimension;
+  return 10.5 + std::log(static_cast<double>(points)) * (dimension - 1) / dimension;
 }
 
 }  // namespace
@@ -78,7 +78,9 @@ double MarginSurvey::spacing_at_sides() const {
         continue;
       }
       asked[c] = false;
-      const double each = volume / static_cast<double>(counts[c]);
+      // As many as may well be there: by chance there are fewer in some cells.
+      const auto count = static_cast<double>(counts[c]);
+      const double each = volume / (count + 3.5 * std::sqrt(count));
       spacing = std::max(spacing, std::pow(each, 1.0 / dimension_));
     }
     if (all_told) return spacing;

@@ -159,20 +159,27 @@ std::uint64_t PeriodicBlocks::vertex_of(std::uint64_t engine_number) const {
 void PeriodicBlocks::take_corners(const MeshStreamBlock& block, MeshStreamBlock& made) {
   const std::size_t size = domain_.torus().dimension() + 1;
   std::vector<std::uint32_t> across;
-  made.corners.reserve(block.corners.size());
+  made.corners.resize(block.corners.size());
+  std::uint32_t* next = made.corners.data();
   for (std::size_t s = 0; s < block.corners.size(); s += size) {
     const std::uint32_t* const corners = &block.corners[s];
     const CornerOffset first = map_[corners[0]].offset;
-    const bool is_across = std::any_of(corners, corners + size, [&](std::uint32_t corner) {
-      return map_[corner].offset != first;
-    });
-    std::vector<std::uint32_t>& numbers = is_across ? across : made.corners;
+    bool is_across = false;
     for (std::size_t i = 0; i < size; ++i) {
-      numbers.push_back(map_[corners[i]].number);
-      if (is_across) made.offsets.push_back(less(map_[corners[i]].offset, first));
+      const Corner& corner = map_[corners[i]];
+      next[i] = corner.number;
+      is_across |= corner.offset != first;
+    }
+    if (!is_across) {
+      next += size;
+      continue;
+    }
+    across.insert(across.end(), next, next + size);
+    for (std::size_t i = 0; i < size; ++i) {
+      made.offsets.push_back(less(map_[corners[i]].offset, first));
     }
   }
-  made.corners.insert(made.corners.end(), across.begin(), across.end());
+  std::copy(across.begin(), across.end(), next);
 }
 
 /// Others of their copies may come of those that have some.

@@ -1,6 +1,7 @@
 #include "stream/triangulate/settle.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -44,7 +45,6 @@ class Settlement {
   }
 
   Settled<D> run() {
-    find_left_out();
     mark_uses();
     announce_vertices();
     import_and_finalize();
@@ -56,20 +56,20 @@ class Settlement {
   void mark_uses() {
     if constexpr (kOfLeaf) {
       const bool knows_neighbours = part_.open_simplices.size() == part_.open.size();
-      if (knows_neighbours && left_out_.empty()) return mark_uses_from_border();
+      if (knows_neighbours && !output_.max_edge) return mark_uses_from_border();
     }
     mark_all_uses();
   }
 
-  /// Too long simplices count as uses: their vertices belong to the mesh. Copies of simplices do
-  /// not: other copies have their vertices. Infinite ones that are final do not: nothing of them is
-  /// in the mesh, and each of their vertices has finite ones.
+  /// Simplices that are left out count as uses: their vertices belong to the mesh. Infinite ones
+  /// that are final do not: nothing of them is in the mesh, and each of their vertices has finite
+  /// ones.
   void mark_all_uses() {
-    const std::uint8_t unused = output_.max_edge ? kByFinal : 0;
     for (std::size_t s = 0; s < part_.simplex_count(); ++s) {
       if (part_.fates[s] == Fate::kFinal) {
-        const std::uint8_t use = is_left_out(s) ? unused : kByFinal | kByEmitted;
-        for (const VertexId v : part_.finite_simplex(s)) use_[v] |= use;
+        const Corners corners = part_.finite_simplex(s);
+        const std::uint8_t use = is_too_long(corners) ? kByFinal : kByFinal | kByEmitted;
+        for (const VertexId v : corners) use_[v] |= use;
       } else if (part_.fates[s] == Fate::kKept) {
         ++kept_;
         for (const VertexId v : part_.simplex(s)) {
@@ -202,30 +202,62 @@ class Settlement {
     return true;
   }
 
-  /// Lists final simplices from `s` on.
+  /// Lists final simplices from `s` on, but those that are left out.
   void list_final(std::size_t s, std::size_t until) {
     while (s < until) {
       if (listed_ == kListed) pass_on_listed();
       const std::size_t end = std::min(until, s + (kListed - listed_));
-      if (!left_out_.empty()) {
-        for (; s < end; ++s) {
-          if (!is_left_out(s)) list(s, s + 1);
-        }
-      } else {
+      if (output_.max_edge) {
+        list_short(s, end);
+      } else if (!chooses()) {
         list(s, end);
-        s = end;
+      } else if constexpr (D <= kMostPeriodic) {
+        list_chosen(s, end);
+      }
+      s = end;
+    }
+  }
+
+  void list_short(std::size_t s, std::size_t end) {
+    for (; s < end; ++s) {
+      if (is_too_long(part_.finite_simplex(s))) {
+        ++result_.left_out;
+      } else {
+        list(s, s + 1);
+      }
+    }
+  }
+
+  /// Whether the domain is periodic, and other copies may stand for simplices.
+  [[nodiscard]] bool chooses() const {
+    if constexpr (D <= kMostPeriodic) return chosen_ && !chosen_->all_chosen();
+    return false;
+  }
+
+  void list_chosen(std::size_t s, std::size_t end) {
+    while (s < end) {
+      std::size_t inside = s;
+      while (inside < end && chosen_->is_inside(part_.finite_simplex(inside))) ++inside;
+      list(s, inside);
+      if (inside == end) return;
+      s = inside + 1;
+      const Choice choice = chosen_->choose(part_.finite_simplex(inside));
+      if (choice == Choice::kInside) list(inside, s);
+      if (choice == Choice::kAcross) {
+        list(inside, s, [this](const Corners& corners) { return chosen_->ordered(corners); });
       }
     }
   }
 
   /// Lists and hashes simplices for which there is room.
-  void list(std::size_t begin, std::size_t end) {
+  template <typename Order = std::identity>
+  void list(std::size_t begin, std::size_t end, const Order& order = {}) {
     const std::uint32_t* const numbers = short_number_.get();
     const std::uint64_t* const hashes = hashes_.data();
     CanonicalHash<D> hash;
     std::array<std::uint32_t, D + 1>* next = &list_[listed_];
     for (std::size_t s = begin; s < end; ++s, ++next) {
-      const Corners corners = ordered(part_.finite_simplex(s));
+      const Corners corners = order(part_.finite_simplex(s));
       std::uint64_t sum = 0;
       for (int i = 0; i <= D; ++i) {
         const std::uint32_t number = numbers[corners[i]];
@@ -236,13 +268,6 @@ class Settlement {
     }
     listed_ += end - begin;
     result_.hash.add(hash);
-  }
-
-  [[nodiscard]] Corners ordered(const Corners& corners) const {
-    if constexpr (D <= kMostPeriodic) {
-      if (chosen_ && !chosen_->all_chosen()) return chosen_->ordered(corners);
-    }
-    return corners;
   }
 
   /// Appends what was listed to the block: memory that nobody has cleared.
@@ -275,33 +300,9 @@ class Settlement {
     return vertex_hash<D>(world(vertex.position));
   }
 
-  void find_left_out() {
-    if constexpr (D <= kMostPeriodic) {
-      if (chosen_ && !chosen_->all_chosen()) {
-        return leave_out([this](const Corners& corners) { return !chosen_->choose(corners); });
-      }
-    }
-    if (!output_.max_edge) return;
-    leave_out([this](const Corners& corners) {
-      const bool left_out = is_too_long(corners);
-      result_.left_out += left_out ? 1 : 0;
-      return left_out;
-    });
-  }
-
-  /// Asks of each simplex that is final whether it is left out.
-  template <typename IsLeftOut>
-  void leave_out(const IsLeftOut& is_left_out) {
-    left_out_.resize(part_.simplex_count());
-    for (std::size_t s = 0; s < left_out_.size(); ++s) {
-      if (part_.fates[s] == Fate::kFinal) left_out_[s] = is_left_out(part_.finite_simplex(s));
-    }
-  }
-
-  [[nodiscard]] bool is_left_out(std::size_t s) const { return !left_out_.empty() && left_out_[s]; }
-
   /// Whether a finite simplex has too long an edge.
   [[nodiscard]] bool is_too_long(const Corners& corners) const {
+    if (!output_.max_edge) return false;
     std::array<Point<D>, D + 1> positions;
     for (int i = 0; i <= D; ++i) positions[i] = world(part_.position(corners[i]));
     return has_longer_edge<D>(positions, *output_.max_edge);
@@ -319,7 +320,6 @@ class Settlement {
   std::unique_ptr<std::uint32_t[]> short_number_;  // by vertex, if it is in the mesh block
   std::unique_ptr<VertexId[]> kept_number_;        // by vertex, if it is in the border
   std::vector<std::uint64_t> hashes_;              // by short number
-  std::vector<bool> left_out_;                     // by simplex that is final; empty if none is
   std::optional<ChosenSimplices<std::min(D, kMostPeriodic)>> chosen_;  // in a periodic domain
   std::size_t kept_ = 0;                           // simplices
   std::array<std::array<std::uint32_t, D + 1>, kListed> list_;
