@@ -56,7 +56,7 @@ struct MeshBlock {
   /// the first in the order of coordinates (x, then y, then z) has 0. Shape: corners.size() *
   /// dimension; empty for other meshes.
   std::vector<std::int8_t> offsets{};
-  std::vector<std::uint64_t> finalized{};    ///< vertices that are used no more
+  std::vector<std::uint64_t> finalized{};  ///< vertices that are used no more
   /// Of `vertices`, the multiples of the header's lattice that they are, if it has one; or none:
   /// then they are found from the coordinates. Who changes coordinates clears these.
   std::vector<Point<3>> on_lattice{};

@@ -15,7 +15,7 @@ namespace spillway {
 /// power of 2 at which copies of them are exact (2^-52 of the box, or finer), and so are the sides;
 /// on a lattice the sides must be on it.
 struct PeriodicBox {
-  Extent box{};                                     ///< sides of open axes are not looked at
+  Extent box{};                                    ///< sides of open axes are not looked at
   std::array<bool, 3> periodic{true, true, true};  ///< by axis; in the plane x and y count
 
   bool operator==(const PeriodicBox&) const = default;

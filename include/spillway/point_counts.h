@@ -21,7 +21,7 @@ struct PointCounts {
   std::uint64_t thinned = 0;   ///< another one stands for their cell
   /// Not read, though the files should hold them: what PointOptions::salvage could not save.
   std::uint64_t lost = 0;
-  std::uint64_t where = 0;  ///< dropped, as PointOptions::where does not hold
+  std::uint64_t where = 0;    ///< dropped, as PointOptions::where does not hold
   std::uint64_t wrapped = 0;  ///< kept, and brought into the periodic box from outside
   std::uint64_t rounded = 0;  ///< kept, and rounded to where copies are exact (PeriodicBox)
   /// Bit n: points of class n are among those that `classes` counts.

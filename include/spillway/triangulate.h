@@ -31,8 +31,8 @@ struct TriangulateOptions {
   /// all copies, of which each simplex that differs by more than whole periods comes once
   /// (MeshBlock::offsets). Not with max_edge.
   std::optional<PeriodicBox> periodic{};
-  std::size_t tile_points = 0;        ///< most of a tile; 0: chosen by the memory
-  std::size_t leaf_points = 0;        ///< most of a leaf; 0: chosen by number and memory
+  std::size_t tile_points = 0;  ///< most of a tile; 0: chosen by the memory
+  std::size_t leaf_points = 0;  ///< most of a leaf; 0: chosen by number and memory
   Division division = Division::kLeastBorder;
   unsigned children = 2;  ///< parts that are merged at a time, 2 to 1024
   /// Whether tiles are triangulated while others are still being read, where headers tell where all

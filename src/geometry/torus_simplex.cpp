@@ -62,9 +62,8 @@ bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) 
     if (!torus.periodic(k)) open[count++] = k;
   }
   if (count == 1) {
-    return std::all_of(facet.begin(), facet.end(), [&](const Point<D>& point) {
-      return point[open[0]] == facet[0][open[0]];
-    });
+    return std::all_of(facet.begin(), facet.end(),
+                       [&](const Point<D>& point) { return point[open[0]] == facet[0][open[0]]; });
   }
   if constexpr (D == 3) {
     if (count == 2) {
@@ -165,9 +164,8 @@ bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& fac
   return periods_of_centre<D>(torus, lowest, middle_of<D>(differences)) == Periods<D>{};
 }
 
-#define SPILLWAY_INSTANTIATE(D)                                                              \
-  template SimplexPlace<D> place_simplex<D>(const Torus&,                                    \
-                                            const std::array<Point<D>, D + 1>&);             \
+#define SPILLWAY_INSTANTIATE(D)                                                                \
+  template SimplexPlace<D> place_simplex<D>(const Torus&, const std::array<Point<D>, D + 1>&); \
   template bool is_chosen_hull_facet<D>(const Torus&, const std::array<Point<D>, D>&);
 SPILLWAY_INSTANTIATE(2)
 SPILLWAY_INSTANTIATE(3)

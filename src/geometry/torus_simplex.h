@@ -12,8 +12,8 @@ namespace spillway::geometry {
 template <int D>
 struct SimplexPlace {
   Periods<D> periods;  ///< in which copy of the box its centre lies
-  Point<D> centre;      ///< of its circumsphere, within 2^-30 of a period along periodic axes
-  double radius;        ///< not below the true one
+  Point<D> centre;     ///< of its circumsphere, within 2^-30 of a period along periodic axes
+  double radius;       ///< not below the true one
 
   [[nodiscard]] bool stands_for_all() const { return periods == Periods<D>{}; }
 };

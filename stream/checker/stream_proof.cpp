@@ -24,10 +24,10 @@ struct UnpairedFacet {
   std::array<std::uint32_t, D> facet{};  // slots, sorted
   std::uint32_t apex = 0;                // slot
   std::uint64_t simplex : 44 = kEmpty;
-  std::uint64_t offsets : 12 = 0;      // of the second and the third corner, seen from the first
-  std::uint64_t apex_offset : 6 = 0;   // likewise
-  std::uint64_t odd : 1 = 0;           // as SortedFacet says
-  std::uint64_t positive : 1 = 0;      // whether the simplex is
+  std::uint64_t offsets : 12 = 0;     // of the second and the third corner, seen from the first
+  std::uint64_t apex_offset : 6 = 0;  // likewise
+  std::uint64_t odd : 1 = 0;          // as SortedFacet says
+  std::uint64_t positive : 1 = 0;     // whether the simplex is
 
   [[nodiscard]] bool empty() const { return simplex == kEmpty; }
   [[nodiscard]] bool same_key(const UnpairedFacet& other) const {
@@ -370,8 +370,7 @@ class StreamProof {
           points[i] = moved(vertices_[facet.facet[i]].point, facet.offsets >> (6 * (i - 1)) & 63);
         }
       });
-      const TorusBoundary boundary =
-          torus_boundary<D>(*coordinates_.torus(), low_, high_, facets);
+      const TorusBoundary boundary = torus_boundary<D>(*coordinates_.torus(), low_, high_, facets);
       if (!boundary.fault.empty()) return faults_.add("{}", boundary.fault);
       constexpr double kRounding = 1e-3;
       const double times = volume_ / boundary.volume;
@@ -455,15 +454,15 @@ class StreamProof {
   const StreamCoordinates<D> coordinates_;
   NeededVertices<D> vertices_;
   ProbingTable<UnpairedFacet<D>> facets_;
-  std::uint64_t simplices_entered_ = 0;          // of blocks that have been read
-  std::uint64_t simplices_joined_ = 0;           // of blocks that join() has seen
-  std::uint64_t inner_ = 0;                      // facets with two positive simplices
-  std::uint64_t not_delaunay_ = 0;               // of these
-  std::uint64_t not_positive_ = 0;               // simplices
-  std::uint64_t unused_ = 0;                     // vertices
-  std::uint64_t outside_ = 0;                    // of the periodic box, or inexact: vertices
-  double volume_ = 0;                            // of a periodic mesh, rounded
-  Point<D> low_{};                               // of the vertices of a periodic mesh
+  std::uint64_t simplices_entered_ = 0;  // of blocks that have been read
+  std::uint64_t simplices_joined_ = 0;   // of blocks that join() has seen
+  std::uint64_t inner_ = 0;              // facets with two positive simplices
+  std::uint64_t not_delaunay_ = 0;       // of these
+  std::uint64_t not_positive_ = 0;       // simplices
+  std::uint64_t unused_ = 0;             // vertices
+  std::uint64_t outside_ = 0;            // of the periodic box, or inexact: vertices
+  double volume_ = 0;                    // of a periodic mesh, rounded
+  Point<D> low_{};                       // of the vertices of a periodic mesh
   Point<D> high_{};
   std::uint64_t last_twin_ = ~std::uint64_t{0};  // the last simplex reported as one
 };

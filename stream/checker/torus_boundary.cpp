@@ -22,9 +22,10 @@ std::string fault_of_planes(int open, double low, double high,
     const bool flat = std::all_of(facet.begin(), facet.end(),
                                   [&](const Point<D>& point) { return point[open] == at; });
     if (flat && (at == low || at == high)) continue;
-    return fmt::format("a facet with a corner at {} = {} has one side only, and does not lie on "
-                       "the hull, from {} to {}",
-                       kAxes[open], at, low, high);
+    return fmt::format(
+        "a facet with a corner at {} = {} has one side only, and does not lie on "
+        "the hull, from {} to {}",
+        kAxes[open], at, low, high);
   }
   return "";
 }
@@ -110,7 +111,8 @@ TorusBoundary torus_boundary(const Torus& torus, const Point<D>& low, const Poin
     boundary.volume *= torus.periodic(k) ? torus.period(k) : high[k] - low[k];
   }
   if (open.empty()) {
-    if (!facets.empty()) boundary.fault = fmt::format("{} facets have one side only", facets.size());
+    if (!facets.empty())
+      boundary.fault = fmt::format("{} facets have one side only", facets.size());
   } else if (open.size() == 1) {
     boundary.fault = fault_of_planes<D>(open[0], low[open[0]], high[open[0]], facets);
   } else if constexpr (D == 3) {

@@ -14,7 +14,7 @@ namespace spillway::stream {
 /// What the index of points is that are read more than once.
 enum class RepeatedIndex {
   kNumber,  ///< a number that is the same each time: they ascend, with gaps where points are left out
-  kInput,   ///< as their source has it
+  kInput,  ///< as their source has it
 };
 
 /// Points that are read more than once. Those of files are read there again; those of pipes, of a

@@ -214,8 +214,8 @@ class PeriodicRun {
 
 void check_periodic(const TriangulateOptions& options, const EngineSink& sink) {
   if (options.dimension > 3) {
-    throw InvalidArgument(fmt::format(
-        "periodic boxes have 2 or 3 dimensions, not {}", options.dimension));
+    throw InvalidArgument(
+        fmt::format("periodic boxes have 2 or 3 dimensions, not {}", options.dimension));
   }
   if (options.max_edge) {
     throw InvalidArgument(

@@ -1,5 +1,6 @@
 #include "stream/periodic/chosen_simplices.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -143,6 +144,12 @@ bool ChosenSimplices<D>::choose_infinite(const Corners& corners) {
     }
     points[n] = points_[corners[i]];
     facet[n++] = corners[i];
+  }
+  if (domain_.torus().closed()) {
+    // A closed torus has no hull. Facets that are deep are not told of by their simplices.
+    const auto is_deep = [this](VertexId v) { return deep_[v] != 0; };
+    proof_.beyond_margin += std::all_of(facet.begin(), facet.end(), is_deep) ? 1 : 0;
+    return false;
   }
   if (!is_chosen_hull_facet<D>(domain_.torus(), points)) return false;
   add_facet(facet, infinite % 2 != 0);

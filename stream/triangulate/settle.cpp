@@ -321,7 +321,7 @@ class Settlement {
   std::unique_ptr<VertexId[]> kept_number_;        // by vertex, if it is in the border
   std::vector<std::uint64_t> hashes_;              // by short number
   std::optional<ChosenSimplices<std::min(D, kMostPeriodic)>> chosen_;  // in a periodic domain
-  std::size_t kept_ = 0;                           // simplices
+  std::size_t kept_ = 0;                                               // simplices
   std::array<std::array<std::uint32_t, D + 1>, kListed> list_;
   std::size_t listed_ = 0;
   Settled<D> result_;

@@ -5,6 +5,6 @@ spillway_test(circumsphere_test unit SOURCES geometry/constructions/circumsphere
           geometry/constructions/plate_test.cpp
   LIBS spillway_geometry)
 spillway_test(geometry_values_test unit
-  SOURCES geometry/exact_sum_test.cpp geometry/framed_point_test.cpp geometry/values_test.cpp LIBS spillway_geometry)
+  SOURCES geometry/exact_sum_test.cpp geometry/framed_point_test.cpp geometry/torus_test.cpp geometry/values_test.cpp LIBS spillway_geometry)
 spillway_test(exact_constructions_test unit
   SOURCES geometry/constructions/exact_constructions_test.cpp LIBS spillway_geometry)

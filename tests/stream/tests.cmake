@@ -126,3 +126,7 @@ spillway_test(stream_library_unit_test unit
           stream/library/points/program_points_test.cpp
           stream/library/points/public_points_test.cpp
   LIBS spillway_stream)
+
+spillway_test(periodic_test property
+  SOURCES stream/periodic/periodic_triangulation_test.cpp stream/checker/torus_proof_test.cpp
+  LIBS spillway_stream spillway_library)

@@ -53,8 +53,8 @@ std::optional<PeriodicBox> periodic_box(const std::string& box, int dimension) {
   if (dimension > 3) throw UsageError("--periodic has an effect with --dim 2 and 3 only");
   const std::size_t sides = split(box, ',').size();
   if (sides != 2 * static_cast<std::size_t>(dimension)) {
-    throw UsageError(fmt::format("--periodic has {} sides, but a box of {} dimensions has {}", sides,
-                                 dimension, 2 * dimension));
+    throw UsageError(fmt::format("--periodic has {} sides, but a box of {} dimensions has {}",
+                                 sides, dimension, 2 * dimension));
   }
   return parse_periodic(box);
 }

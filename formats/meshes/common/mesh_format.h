@@ -93,7 +93,7 @@ struct MeshFormat {
   int most_dimension = 2;  ///< of its simplices: 3 means tetrahedra besides triangles
   bool holds_input_index = false;
   HeldAttributes held_attributes = HeldAttributes::kNone;
-  bool holds_offsets = false;  ///< meshes may be periodic
+  bool holds_offsets = false;       ///< meshes may be periodic
   bool takes_colour = false;        ///< unasked: vertices get the colour of their points
   bool rounds_coordinates = false;  ///< to 32-bit floats
   bool needs_regular_file = false;  ///< its beginning is written last

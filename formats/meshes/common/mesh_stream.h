@@ -78,8 +78,8 @@ struct MeshStreamBlock {
   [[nodiscard]] std::uint64_t bytes() const {
     return vertices.size() * sizeof(vertices[0]) + input_index.size() * sizeof(input_index[0]) +
            attributes.size() + imported.size() * sizeof(imported[0]) +
-           corners.size() * sizeof(corners[0]) + offsets.size() + finalized.size() * sizeof(finalized[0]) +
-           (absorbed ? absorbed->bytes() : 0);
+           corners.size() * sizeof(corners[0]) + offsets.size() +
+           finalized.size() * sizeof(finalized[0]) + (absorbed ? absorbed->bytes() : 0);
   }
 
   void clear() {

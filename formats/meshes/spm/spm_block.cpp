@@ -184,8 +184,8 @@ std::uint32_t read_offsets(std::span<const std::byte>& bytes, const MeshStreamHe
   return count;
 }
 
-void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers,
-                 const FileSpot& where, MeshStreamBlock& block) {
+void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers, const FileSpot& where,
+                 MeshStreamBlock& block) {
   const std::size_t size = dimension + 1;
   const std::size_t count = block.offsets.size() / size;
   const std::size_t first = block.corners.size();
@@ -195,7 +195,8 @@ void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers,
     columns.read(count, column);
     for (std::size_t s = 0; s < count; ++s) {
       if (column[s] >= numbers) {
-        throw BadInput(where, "a corner in a block is no vertex; the file is corrupt, make it again");
+        throw BadInput(where,
+                       "a corner in a block is no vertex; the file is corrupt, make it again");
       }
       block.corners[first + s * size + i] = column[s];
     }

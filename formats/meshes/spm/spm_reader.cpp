@@ -69,8 +69,8 @@ class SpmReader : public MeshStreamReader {
     if (!is_dimension(header_.dimension)) stream_.fail("the dimension is none of 2 to 6");
     const auto flags = stream_.take<std::uint32_t>();
     constexpr std::uint32_t kPeriodic = 7 * kSpmPeriodicX;
-    constexpr std::uint32_t kKnown =
-        kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex | kPeriodic | kSpmHasAttributes;
+    constexpr std::uint32_t kKnown = kSpmHasLattice | kSpmHasPoints | kSpmHasExtent |
+                                     kSpmHasInputIndex | kPeriodic | kSpmHasAttributes;
     if ((flags & ~kKnown) != 0) stream_.fail("unknown flags are set");
     header_.has_input_index = (flags & kSpmHasInputIndex) != 0;
     if ((flags & kSpmHasLattice) != 0) {
