@@ -8,6 +8,7 @@
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/longest_vectors.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "formats/meshes/spm/spm_corners.h"
 #include "formats/points/spp/spp_attributes.h"
 #include "formats/points/spp/spp_coordinates.h"
@@ -150,15 +151,6 @@ void append_across(std::vector<std::byte>& out, const MeshStreamHeader& header,
   }
 }
 
-bool is_offset(CornerOffset offset, const PeriodicBox& box) {
-  if ((static_cast<std::uint8_t>(offset) & kNoOffsetBits) != 0) return false;
-  for (int k = 0; k < 3; ++k) {
-    const int periods = periods_along(offset, k);
-    if (periods < -1 || (periods != 0 && !box.periodic[k])) return false;
-  }
-  return true;
-}
-
 /// How many simplices have offsets. Takes their number and the offsets off the front of `bytes`.
 std::uint32_t read_offsets(std::span<const std::byte>& bytes, const MeshStreamHeader& header,
                            std::uint32_t simplices, const FileSpot& where,
@@ -184,8 +176,8 @@ std::uint32_t read_offsets(std::span<const std::byte>& bytes, const MeshStreamHe
   return count;
 }
 
-void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers,
-                 const FileSpot& where, MeshStreamBlock& block) {
+void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers, const FileSpot& where,
+                 MeshStreamBlock& block) {
   const std::size_t size = dimension + 1;
   const std::size_t count = block.offsets.size() / size;
   const std::size_t first = block.corners.size();
@@ -195,7 +187,8 @@ void read_across(ColumnReader& columns, int dimension, std::uint32_t numbers,
     columns.read(count, column);
     for (std::size_t s = 0; s < count; ++s) {
       if (column[s] >= numbers) {
-        throw BadInput(where, "a corner in a block is no vertex; the file is corrupt, make it again");
+        throw BadInput(where,
+                       "a corner in a block is no vertex; the file is corrupt, make it again");
       }
       block.corners[first + s * size + i] = column[s];
     }

@@ -260,6 +260,7 @@ MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   check_further(stream);
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(number_of(vertex));
+  stream.offsets = stream_offsets(block, header_);
   stream.finalized.reserve(block.finalized.size());
   for (const std::uint64_t vertex : block.finalized) {
     stream.finalized.push_back(number_of(vertex));
