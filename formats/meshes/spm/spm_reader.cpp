@@ -73,8 +73,9 @@ class SpmReader : public MeshStreamReader {
         kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex;
     constexpr std::uint32_t kOfPeriodic = 7 * kSpmPeriodicX | kSpmHasAttributes;
     const bool is_periodic = version == kSpmPeriodicVersion;
-    if ((flags & ~(is_periodic ? kKnown | kOfPeriodic : kKnown)) != 0)
+    if ((flags & ~(is_periodic ? kKnown | kOfPeriodic : kKnown)) != 0) {
       stream_.fail("unknown flags are set");
+    }
     header_.has_input_index = (flags & kSpmHasInputIndex) != 0;
     if ((flags & kSpmHasLattice) != 0) {
       header_.lattice = lattice_of(stream_.take<std::array<double, 6>>());
