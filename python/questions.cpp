@@ -124,6 +124,21 @@ py::dict points_info(Run& run, const std::string& path, const PointOptions& opti
   return statistics;
 }
 
+/// Lowest and highest sides, None along open axes.
+py::object periodic_of(const std::optional<PeriodicBox>& periodic, int dimension) {
+  if (!periodic) return py::none();
+  py::tuple low(dimension);
+  py::tuple high(dimension);
+  for (int k = 0; k < dimension; ++k) {
+    const auto side = [&](double place) {
+      return periodic->periodic[k] ? py::object(py::float_(place)) : py::object(py::none());
+    };
+    low[k] = side(periodic->box.low[k]);
+    high[k] = side(periodic->box.high[k]);
+  }
+  return py::make_tuple(low, high);
+}
+
 py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options) {
   MeshInfo info;
   run.expect(kPhasesOfInfo);
@@ -145,6 +160,7 @@ py::dict mesh_info(Run& run, const std::string& path, const MeshOptions& options
   statistics["crs"] = text_or_none(info.crs);
   statistics["peak_live_vertices"] = info.peak_live_vertices;
   statistics["attributes"] = statistics_of(info.attributes);
+  statistics["periodic"] = periodic_of(info.periodic, info.dimension);
   return statistics;
 }
 

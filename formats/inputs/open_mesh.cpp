@@ -131,6 +131,7 @@ Mesh collect_mesh(MeshStreamReader& stream) {
   mesh.header.lattice = stream.header().lattice;
   mesh.header.crs = stream.header().crs;
   mesh.header.attributes = stream.header().attributes;
+  mesh.header.periodic = stream.header().periodic;
   MeshStreamBlock block;
   while (stream.read(block)) {
     append_stream_numbers(block, mesh.vertices.size(), mesh.corners);
@@ -139,6 +140,9 @@ Mesh collect_mesh(MeshStreamReader& stream) {
     mesh.input_index.insert(mesh.input_index.end(), block.input_index.begin(),
                             block.input_index.end());
     mesh.attributes.insert(mesh.attributes.end(), block.attributes.begin(), block.attributes.end());
+    if (!mesh.header.periodic) continue;
+    mesh.offsets.resize(mesh.corners.size() - block.offsets.size(), kNoOffset);
+    mesh.offsets.insert(mesh.offsets.end(), block.offsets.begin(), block.offsets.end());
   }
   mesh.header.vertices = mesh.vertices.size();
   mesh.header.simplices = mesh.corners.size() / mesh.corners_per_simplex();

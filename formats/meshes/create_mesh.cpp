@@ -26,6 +26,15 @@ void check_holds(const MeshFormat& format, const std::string& path, const MeshCo
                     path, format.title, list_of_formats(hold, "or")),
         {.file = path});
   }
+  if (contents.is_periodic && !format.holds_offsets) {
+    const auto hold = [](const MeshFormat& other) { return other.holds_offsets; };
+    throw InvalidArgument(
+        fmt::format("cannot write {}: {} cannot hold a periodic mesh, whose {} cross the sides of "
+                    "the box; choose {}",
+                    path, format.title, simplices_of(contents.dimension),
+                    list_of_formats(hold, "or")),
+        {.file = path});
+  }
 }
 
 MeshFiles create_mesh_files(FileSystem& files, const std::string& path, const MeshFormat& format,

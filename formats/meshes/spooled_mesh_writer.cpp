@@ -38,7 +38,8 @@ class SpooledMeshWriter : public MeshStreamWriter {
         holds_attributes_(files_.format->held_attributes != HeldAttributes::kNone),
         spool_(held(header), files_.main->name(), scratch, memory) {
     for (std::unique_ptr<OutputFile>* const file :
-         {&files_.main, &files_.simplices, &files_.input_index, &files_.attributes}) {
+         {&files_.main, &files_.simplices, &files_.input_index, &files_.attributes, &files_.offsets,
+          &files_.box}) {
       if (*file) *file = std::make_unique<CountedOutput>(std::move(*file), bytes_);
     }
   }

@@ -6,6 +6,7 @@
 #include <spillway/export.h>
 #include <spillway/extent.h>
 #include <spillway/mesh.h>
+#include <spillway/periodic.h>
 #include <spillway/point_counts.h>
 #include <spillway/points.h>
 #include <spillway/totals.h>
@@ -96,7 +97,8 @@ struct MeshInfo {
   std::string crs{};
   /// The most vertices that a reader holds at a time, of formats of streams.
   std::optional<std::uint64_t> peak_live_vertices{};
-  std::vector<Attribute> attributes{};  ///< what vertices carry
+  std::vector<Attribute> attributes{};    ///< what vertices carry
+  std::optional<PeriodicBox> periodic{};  ///< the box that the mesh repeats with
 };
 
 /// Reads a whole mesh; of formats of streams no more is held than their open border. Throws Error

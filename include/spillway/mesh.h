@@ -52,9 +52,8 @@ struct MeshBlock {
   std::vector<std::uint64_t> input_index{};  ///< of `vertices`, if the header says so
   std::vector<std::uint64_t> corners{};      ///< dimension + 1 vertices a simplex, oriented
   /// Of a periodic mesh, for each of `corners` the copy of the vertex that it is: so many periods
-  /// along each of its `dimension` axes beyond the vertex, -1, 0 or 1. Of the corners of a simplex,
-  /// the first in the order of coordinates (x, then y, then z) has 0. Shape: corners.size() *
-  /// dimension; empty for other meshes.
+  /// along each of its `dimension` axes beyond the vertex, -1, 0 or 1. The first corner of a simplex
+  /// has 0. Shape: corners.size() * dimension; empty for other meshes.
   std::vector<std::int8_t> offsets{};
   std::vector<std::uint64_t> finalized{};  ///< vertices that are used no more
   /// Of `vertices`, the multiples of the header's lattice that they are, if it has one; or none:

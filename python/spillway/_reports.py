@@ -321,7 +321,11 @@ class PointsInfo(_Report):
 
 @dataclasses.dataclass(frozen=True, repr=False)
 class MeshInfo(_Report):
-    """What a file of a mesh holds. What it does not tell is None."""
+    """What a file of a mesh holds. What it does not tell is None.
+
+    `periodic` is the (lowest, highest) sides of the box that the mesh repeats with, where open axes
+    have None.
+    """
 
     format: str
     dimension: int
@@ -338,6 +342,7 @@ class MeshInfo(_Report):
     crs: Optional[str]
     peak_live_vertices: Optional[int]
     attributes: list[dict[str, Any]]
+    periodic: Optional[Tuple[Tuple[Optional[float], ...], Tuple[Optional[float], ...]]]
 
     def _summary(self) -> str:
         return f"{_counts(self)}, {self.format}, hash {self.canonical_hash}"

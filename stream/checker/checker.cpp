@@ -8,6 +8,7 @@
 #include "src/geometry/dimensions.h"
 #include "stream/checker/mesh_proof.h"
 #include "stream/checker/stream_proof.h"
+#include "stream/checker/whole_stream.h"
 
 namespace spillway::checker {
 namespace {
@@ -47,10 +48,24 @@ CheckReport read_stream(MeshStreamReader& reader, const CheckerOptions& options,
   return report;
 }
 
+/// On the lattice of the mesh, if it has one. What is held at a time says nothing of a mesh that is
+/// in memory.
+CheckReport check_periodic_mesh(const Mesh& mesh, CheckerOptions options) {
+  if (mesh.header.lattice) options.input_lattice = mesh.header.lattice;
+  options.vertex = {};
+  options.progress = {};
+  WholeStream stream(mesh);
+  CheckReport report = read_stream(stream, options, StreamTask::kProve);
+  report.peak_live_vertices = 0;
+  report.peak_open_facets = 0;
+  return report;
+}
+
 }  // namespace
 
 CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options) {
   require_dimension(mesh.header.dimension);
+  if (mesh.header.periodic) return check_periodic_mesh(mesh, options);
   CheckReport report;
   report.vertices = mesh.vertices.size();
   report.simplices = mesh.corners.size() / mesh.corners_per_simplex();
@@ -64,6 +79,11 @@ CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckerOptions& op
 
 CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options) {
   return read_stream(reader, options, StreamTask::kCount);
+}
+
+std::uint64_t count_periodic_hull(const Mesh& mesh) {
+  WholeStream stream(mesh);
+  return read_stream(stream, {}, StreamTask::kCount).hull_facets;
 }
 
 std::uint64_t canonical_hash(const Mesh& mesh) {

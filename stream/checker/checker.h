@@ -34,7 +34,7 @@ struct CheckerOptions : CheckOptions {
 /// boundary one convex surface traversed once, every inner facet locally Delaunay by exact
 /// predicates. Together these make the mesh the Delaunay triangulation of its vertices (Delaunay's
 /// lemma: locally Delaunay everywhere implies globally); docs/algorithm-checker.md has the
-/// argument. Throws Failure if the mesh's dimension is none of 2 to 6.
+/// argument. A periodic mesh is proved as a stream of one block is. Throws Failure if the mesh's dimension is none of 2 to 6.
 CheckReport check_mesh(const Mesh& mesh, const CheckerOptions& options);
 
 /// The same proof for a mesh that flows, in memory that is proportional to its open border (the
@@ -45,6 +45,9 @@ CheckReport check_mesh_stream(MeshStreamReader& reader, const CheckerOptions& op
 /// The numbers, the hash and the peaks of that report without the proof: faults are only totals
 /// other than those that the stream ends with.
 CheckReport count_mesh_stream(MeshStreamReader& reader, const CheckerOptions& options);
+
+/// The facets of one simplex only, of a periodic mesh.
+std::uint64_t count_periodic_hull(const Mesh& mesh);
 
 /// The canonical hash of any mesh, proved or not. Throws Failure if a vertex number is out of range.
 std::uint64_t canonical_hash(const Mesh& mesh);

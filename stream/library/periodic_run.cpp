@@ -225,7 +225,7 @@ void check_periodic(const TriangulateOptions& options, const EngineSink& sink) {
   if (!options.resume_folder.empty()) {
     throw InvalidArgument("a periodic run cannot go on: leave the folder to resume out");
   }
-  sink.check_periodic();
+  sink.check_periodic(options.dimension);
 }
 
 Report triangulate_periodically(Run& run) { return PeriodicRun(run).run(); }

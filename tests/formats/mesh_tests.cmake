@@ -20,6 +20,9 @@ spillway_test(vtu_reader_test unit
 spillway_test(mesh_round_trip_test unit
   SOURCES formats/meshes/mesh_attributes_test.cpp formats/meshes/mesh_round_trip_test.cpp
   LIBS spillway_formats fmt::fmt)
+spillway_test(periodic_mesh_test unit
+  SOURCES formats/meshes/periodic_mesh_test.cpp
+  LIBS spillway_formats fmt::fmt)
 spillway_test(mesh_fault_test fault
   SOURCES formats/meshes/mesh_fault_test.cpp
   LIBS spillway_formats)

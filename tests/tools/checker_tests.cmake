@@ -6,6 +6,7 @@ spillway_test(stream_proof_test unit
           stream/checker/mesh_proof_test.cpp
           stream/checker/needed_vertices_test.cpp stream/checker/stream_block_test.cpp
           stream/checker/stream_coordinates_test.cpp stream/checker/stream_proof_test.cpp
+          stream/checker/whole_stream_test.cpp
   LIBS spillway_checker spillway_delaunay spillway_generators)
 spillway_test(input_kind_test unit
   SOURCES formats/inputs/input_kind_test.cpp

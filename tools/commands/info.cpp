@@ -61,6 +61,18 @@ Json extent_json(const std::optional<Extent>& extent, int coordinates) {
   return {{"min", some(extent->low)}, {"max", some(extent->high)}};
 }
 
+/// Lowest and highest sides, null along open axes.
+Json periodic_json(const std::optional<PeriodicBox>& periodic, int dimension) {
+  if (!periodic) return nullptr;
+  Json low = std::vector<double>();
+  Json high = std::vector<double>();
+  for (int k = 0; k < dimension; ++k) {
+    low.push_back(periodic->periodic[k] ? Json(periodic->box.low[k]) : Json(nullptr));
+    high.push_back(periodic->periodic[k] ? Json(periodic->box.high[k]) : Json(nullptr));
+  }
+  return {{"min", low}, {"max", high}};
+}
+
 void add_lattice(const std::optional<LatticeInfo>& lattice, Json& json) {
   json["scale"] = lattice ? Json(lattice->scale) : Json(nullptr);
   json["offset"] = lattice ? Json(lattice->offset) : Json(nullptr);
@@ -256,6 +268,7 @@ Json mesh_json(const std::string& path, const MeshInfo& info) {
   }
   add_lattice(info.lattice, json);
   json["on_lattice"] = info.lattice.has_value();
+  json["periodic"] = periodic_json(info.periodic, info.dimension);
   json["input_index"] = info.has_input_index;
   json["crs"] = text_or_null(info.crs);
   if (info.tells_totals) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/meshes/common/periodic_mesh.h"
 #include "src/error.h"
 
 namespace spillway::formats {
@@ -63,6 +64,29 @@ void CheckedMeshWriter::write_simplices(std::span<const std::uint64_t> corners) 
   }
   put_simplices(corners);
   simplices_ += count;
+}
+
+void CheckedMeshWriter::write_offsets(std::uint64_t first_corner,
+                                      std::span<const CornerOffset> offsets) {
+  if (!header_.periodic) fail("offsets of corners came for a mesh that is not periodic");
+  const std::size_t corners = corners_per_simplex();
+  const std::uint64_t written = simplices_ * corners;
+  if (first_corner < offsets_ || first_corner > written ||
+      offsets.size() > written - first_corner || first_corner % corners != 0 ||
+      offsets.size() % corners != 0) {
+    fail(
+        fmt::format("offsets of {} corners came from corner {} on, where {} corners were written "
+                    "and those before {} had theirs",
+                    offsets.size(), first_corner, written, offsets_));
+  }
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    if (is_offset(offsets[i], *header_.periodic) && (i % corners != 0 || offsets[i] == kNoOffset)) {
+      continue;
+    }
+    fail(fmt::format("corner {} has an offset that it cannot have", first_corner + i));
+  }
+  offsets_ = first_corner + offsets.size();
+  put_offsets(first_corner, offsets);
 }
 
 void CheckedMeshWriter::finish() {

@@ -17,6 +17,7 @@ class CheckedMeshWriter : public MeshWriter {
                       std::span<const std::byte> attributes) final;
   bool begin_vertices_again() final;
   void write_simplices(std::span<const std::uint64_t> corners) final;
+  void write_offsets(std::uint64_t first_corner, std::span<const CornerOffset> offsets) final;
   void finish() final;
 
  protected:
@@ -34,6 +35,10 @@ class CheckedMeshWriter : public MeshWriter {
   /// Appends simplices that have passed the checks, after the last vertex.
   virtual void put_simplices(std::span<const std::uint64_t> corners) = 0;
 
+  /// Takes offsets that have passed the checks, of whole simplices that have been put.
+  virtual void put_offsets(std::uint64_t /*first_corner*/,
+                           std::span<const CornerOffset> /*offsets*/) {}
+
   /// Called once, after all vertices and simplices.
   virtual void complete() = 0;
 
@@ -50,6 +55,7 @@ class CheckedMeshWriter : public MeshWriter {
   std::string name_;
   std::uint64_t vertices_ = 0;   // written so far, since they began to come (again)
   std::uint64_t simplices_ = 0;  // written so far
+  std::uint64_t offsets_ = 0;    // corners up to the last one that has got its offset
 };
 
 }  // namespace spillway::formats

@@ -37,13 +37,20 @@ class Division {
                 last_use_.begin() + static_cast<std::ptrdiff_t>(end), b);
     }
     std::span<const std::uint32_t> left = whole_.corners;
-    for (; !left.empty(); left = left.subspan(corners_)) add(left.first(corners_));
+    for (; !left.empty(); left = left.subspan(corners_)) {
+      const std::size_t b = add(left.first(corners_));
+      if (left.size() > whole_.offsets.size()) continue;
+      const auto offsets = whole_.offsets.end() - static_cast<std::ptrdiff_t>(left.size());
+      blocks_[b].offsets.insert(blocks_[b].offsets.end(), offsets,
+                                offsets + static_cast<std::ptrdiff_t>(corners_));
+    }
     for (std::size_t b = 0; b < blocks_.size(); ++b) finalize(b);
     return std::move(blocks_);
   }
 
  private:
-  void add(std::span<const std::uint32_t> simplex) {
+  /// Returns the block that it comes in.
+  std::size_t add(std::span<const std::uint32_t> simplex) {
     const std::size_t b = *std::ranges::max_element(simplex) / size_;
     MeshStreamBlock& block = blocks_[b];
     for (const std::uint32_t vertex : simplex) {
@@ -51,6 +58,7 @@ class Division {
       block.corners.push_back(vertex >= b * size_ ? static_cast<std::uint32_t>(vertex - b * size_)
                                                   : imported(b, vertex));
     }
+    return b;
   }
 
   /// The short number of a vertex of an earlier block.

@@ -24,6 +24,7 @@ MeshFileHeader header_of_mesh(const MeshStreamHeader& header, const MeshTotals& 
   mesh.lattice = header.lattice;
   mesh.crs = header.crs;
   mesh.attributes = header.attributes;
+  mesh.periodic = header.periodic;
   return mesh;
 }
 

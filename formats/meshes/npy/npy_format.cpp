@@ -53,6 +53,10 @@ MeshFiles create(FileSystem& files, const std::string& path, const MeshContents&
   created.simplices = files.create(names.simplices);
   if (contents.has_input_index) created.input_index = files.create(names.input_index);
   if (contents.has_attributes) created.attributes = files.create(names.attributes);
+  if (contents.is_periodic) {
+    created.offsets = files.create(names.offsets);
+    created.box = files.create(names.box);
+  }
   return created;
 }
 
@@ -79,6 +83,7 @@ constinit const MeshFormat kNpyMesh = {
     .most_dimension = 6,
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
+    .holds_offsets = true,
     .open_writer = open_npy_mesh_writer,
     .file_set = &kFileSet,
 };

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "formats/bytes/buffered_input.h"
 #include "formats/bytes/number_type.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "formats/points/attributes/record_conversion.h"
 #include "formats/points/npy/npy_header.h"
@@ -26,6 +28,8 @@ constexpr std::string_view kVertices = "_vertices";
 constexpr std::string_view kSimplices = "_simplices";
 constexpr std::string_view kInputIndex = "_input_index";
 constexpr std::string_view kAttributes = "_attributes";
+constexpr std::string_view kOffsets = "_offsets";
+constexpr std::string_view kBox = "_box";
 
 std::string without(std::string_view path, std::string_view end) {
   return std::string(path.ends_with(end) ? path.substr(0, path.size() - end.size()) : path);
@@ -40,6 +44,8 @@ constexpr std::array kTypes = {
     NamedType{"f8", NumberType::kFloat64}, NamedType{"f4", NumberType::kFloat32},
     NamedType{"i8", NumberType::kInt64},   NamedType{"u8", NumberType::kUint64},
     NamedType{"i4", NumberType::kInt32},   NamedType{"u4", NumberType::kUint32}};
+
+constexpr NamedType kByte = {"i1", NumberType::kInt8};
 
 /// Makes sure that the rows of an array, and nothing else, are in the file from where `source`
 /// stands, if its size is known: then it returns true.
@@ -57,12 +63,17 @@ bool check_room(const InputBytes& source, std::uint64_t rows, std::uint64_t each
   return true;
 }
 
-/// One array of one or two dimensions being read.
+/// One array of up to three dimensions being read.
 class ArrayInput {
  public:
-  ArrayInput(FileSystem& files, const std::string& path)
+  /// Bytes are read only if `takes_bytes`.
+  ArrayInput(FileSystem& files, const std::string& path, bool takes_bytes = false)
       : source_(files.open(path)), header_(read_npy_header(source_)) {
-    choose_type();
+    if (takes_bytes && header_.type.substr(header_.type.empty() ? 0 : 1) == kByte.name) {
+      type_ = kByte.type;
+    } else {
+      choose_type();
+    }
     if (header_.fortran_order) {
       fail("the array is in Fortran order; save numpy.ascontiguousarray(a)");
     }
@@ -82,6 +93,13 @@ class ArrayInput {
     }
   }
 
+  /// Demands exactly that shape.
+  void check_exact_shape(const std::vector<std::uint64_t>& shape) const {
+    if (header_.shape == shape) return;
+    fail(fmt::format("the array has shape ({}), but ({}) is needed; it is of another mesh",
+                     fmt::join(header_.shape, ", "), fmt::join(shape, ", ")));
+  }
+
   /// Demands real numbers.
   void check_reals() const {
     if (is_integer(type_)) {
@@ -98,6 +116,16 @@ class ArrayInput {
       fail(
           fmt::format("the array has elements of type '{}', but these are indices; save "
                       "a.astype('<i8')",
+                      header_.type));
+    }
+  }
+
+  /// Demands integers with a sign.
+  void check_signed() const {
+    if (!is_signed_integer(type_)) {
+      fail(
+          fmt::format("the array has elements of type '{}', but these are numbers of periods; save "
+                      "a.astype('i1')",
                       header_.type));
     }
   }
@@ -241,6 +269,70 @@ void read_input_index(FileSystem& files, const std::string& path, Mesh& mesh) {
       [&](const std::byte* row) { mesh.input_index.push_back(array.index(row, 0)); });
 }
 
+/// Low sides, then high sides; open axes have none.
+void read_box(FileSystem& files, const std::string& path, Mesh& mesh) {
+  ArrayInput array(files, path);
+  const int dimension = mesh.header.dimension;
+  if (dimension > kOwnAxes) array.fail("only meshes of 2 and 3 dimensions are periodic");
+  array.check_exact_shape({2, static_cast<std::uint64_t>(dimension)});
+  array.check_reals();
+  std::vector<std::array<double, 3>> sides;
+  array.read_rows(
+      static_cast<std::uint64_t>(dimension), [](std::uint64_t) {},
+      [&](const std::byte* row) {
+        sides.emplace_back();
+        for (int k = 0; k < dimension; ++k) {
+          sides.back()[k] = array.number(row, static_cast<std::uint64_t>(k));
+        }
+      });
+  PeriodicBox box{.box = {sides[0], sides[1]}};
+  for (int k = 0; k < dimension; ++k) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    box.periodic[k] = box.box.low[k] != -kInfinity || box.box.high[k] != kInfinity;
+  }
+  box = plain_box(box, dimension);
+  const std::string fault = fault_of_box(box, dimension, mesh.header.lattice);
+  if (!fault.empty()) array.fail(fault);
+  mesh.header.periodic = box;
+}
+
+/// After the box.
+void read_offsets(FileSystem& files, const std::string& path, Mesh& mesh) {
+  ArrayInput array(files, path, true);
+  const std::uint64_t corners = mesh.corners_per_simplex();
+  const auto axes = static_cast<std::uint64_t>(mesh.header.dimension);
+  array.check_exact_shape({mesh.header.simplices, corners, axes});
+  array.check_signed();
+  array.read_rows(
+      corners * axes, [&](std::uint64_t rows) { mesh.offsets.reserve(rows * corners); },
+      [&](const std::byte* row) {
+        for (std::uint64_t corner = 0; corner < corners; ++corner) {
+          ToldPeriods periods{};
+          for (std::uint64_t k = 0; k < axes; ++k) {
+            periods[k] = array.number(row, corner * axes + k);
+          }
+          const std::string fault = fault_of_offset(periods, corner, *mesh.header.periodic);
+          if (!fault.empty()) array.fail_at_row(fault);
+          mesh.offsets.push_back(offset_of(periods));
+        }
+      });
+}
+
+/// Both files, or none of them.
+void read_periodic(FileSystem& files, const NpyMeshNames& names, Mesh& mesh) {
+  const bool has_offsets = files.exists(names.offsets);
+  if (has_offsets != files.exists(names.box)) {
+    const std::string& there = has_offsets ? names.offsets : names.box;
+    const std::string& missing = has_offsets ? names.box : names.offsets;
+    throw BadInput(there, fmt::format("this is of a periodic mesh, to which {} belongs, which is "
+                                      "not there; get a complete copy",
+                                      missing));
+  }
+  if (!has_offsets) return;
+  read_box(files, names.box, mesh);
+  read_offsets(files, names.offsets, mesh);
+}
+
 /// Some rows at a time.
 void read_attributes(FileSystem& files, const std::string& path, Mesh& mesh) {
   constexpr std::size_t kPiece = std::size_t{1} << 20;
@@ -293,7 +385,8 @@ NpyMeshNames npy_mesh_names(const std::string& path) {
   const auto name = [&](std::string_view part) {
     return fmt::format("{}{}{}", stem, part, kExtension);
   };
-  return {name(kVertices), name(kSimplices), name(kInputIndex), name(kAttributes)};
+  return {name(kVertices),   name(kSimplices), name(kInputIndex),
+          name(kAttributes), name(kOffsets),   name(kBox)};
 }
 
 std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::string& path) {
@@ -304,10 +397,16 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
 }
 
 bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path) {
-  const std::string stem = without(without(path, kExtension), kInputIndex);
-  const auto names = find_npy_mesh(files, without(stem, kAttributes));
-  return names && (path == names->vertices || path == names->simplices ||
-                   path == names->input_index || path == names->attributes);
+  std::string stem = without(path, kExtension);
+  for (const std::string_view part : {kInputIndex, kAttributes, kOffsets, kBox}) {
+    if (!stem.ends_with(part)) continue;
+    stem = without(stem, part);
+    break;
+  }
+  const auto names = find_npy_mesh(files, stem);
+  return names &&
+         (path == names->vertices || path == names->simplices || path == names->input_index ||
+          path == names->attributes || path == names->offsets || path == names->box);
 }
 
 Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
@@ -316,6 +415,7 @@ Mesh read_npy_mesh(FileSystem& files, const NpyMeshNames& names) {
   read_simplices(files, names.simplices, coordinates, mesh);
   if (files.exists(names.input_index)) read_input_index(files, names.input_index, mesh);
   if (files.exists(names.attributes)) read_attributes(files, names.attributes, mesh);
+  read_periodic(files, names, mesh);
   return mesh;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // A mesh as npy arrays side by side: X_vertices.npy, X_simplices.npy and, where there are some,
-// X_input_index.npy and X_attributes.npy, for a mesh called X.npy. Layout: docs/formats-meshes.md
-// ("npy").
+// X_input_index.npy, X_attributes.npy and, of a periodic mesh, X_offsets.npy and X_box.npy, for a
+// mesh called X.npy. Layout: docs/formats-meshes.md ("npy").
 
 #include <memory>
 #include <optional>
@@ -22,6 +22,8 @@ struct NpyMeshNames {
   std::string simplices;
   std::string input_index;
   std::string attributes;
+  std::string offsets;
+  std::string box;
 };
 
 /// The files that `path` stands for when a mesh is written: X.npy or X.
@@ -35,7 +37,8 @@ std::optional<NpyMeshNames> find_npy_mesh(const FileSystem& files, const std::st
 bool is_part_of_npy_mesh(const FileSystem& files, const std::string& path);
 
 /// The names of the files that the mesh `path` is written to. Throws Failure for standard output, and
-/// if an input index or attributes of an earlier mesh would lie beside a mesh that has none.
+/// if an input index, attributes, offsets or a box of an earlier mesh would lie beside a mesh that
+/// has none.
 NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
                                const MeshContents& contents);
 

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -80,6 +83,13 @@ class NpyMeshWriter : public CheckedMeshWriter {
       attributes_.emplace(std::move(files.attributes),
                           array_of_records(records_.layout(), header.vertices));
     }
+    if (header.periodic) {
+      const auto axes = static_cast<std::uint64_t>(header.dimension);
+      offsets_.emplace(std::move(files.offsets),
+                       array_of("|i1", {header.simplices, corners_per_simplex(), axes}));
+      box_.emplace(std::move(files.box), array_of("<f8", {2, axes}));
+      put_box(*header.periodic);
+    }
   }
 
  private:
@@ -110,15 +120,57 @@ class NpyMeshWriter : public CheckedMeshWriter {
     simplices_.append(corners);
   }
 
+  void put_offsets(std::uint64_t first_corner, std::span<const CornerOffset> offsets) override {
+    put_none_before(first_corner);
+    periods_.clear();
+    for (const CornerOffset offset : offsets) {
+      for (int k = 0; k < header().dimension; ++k) {
+        periods_.push_back(static_cast<std::int8_t>(periods_along(offset, k)));
+      }
+    }
+    offsets_->append(std::span<const std::int8_t>(periods_));
+    corners_ += offsets.size();
+  }
+
+  /// Corners that got no offset have none.
+  void put_none_before(std::uint64_t corner) {
+    constexpr std::uint64_t kPiece = 4096;
+    const std::array<std::int8_t, kPiece * 3> none{};
+    while (corners_ < corner) {
+      const std::uint64_t some = std::min(corner - corners_, kPiece);
+      offsets_->append(
+          std::span(none).first(some * static_cast<std::uint64_t>(header().dimension)));
+      corners_ += some;
+    }
+  }
+
+  /// Open axes go on without end.
+  void put_box(const PeriodicBox& box) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::vector<double> sides;
+    for (int k = 0; k < header().dimension; ++k) {
+      sides.push_back(box.periodic[k] ? box.box.low[k] : -kInfinity);
+    }
+    for (int k = 0; k < header().dimension; ++k) {
+      sides.push_back(box.periodic[k] ? box.box.high[k] : kInfinity);
+    }
+    box_->append(std::span<const double>(sides));
+  }
+
   void complete() override {
+    if (offsets_) put_none_before(header().simplices * corners_per_simplex());
     vertices_.settle();
     simplices_.settle();
     if (input_index_) input_index_->settle();
     if (attributes_) attributes_->settle();
+    if (offsets_) offsets_->settle();
+    if (box_) box_->settle();
     const FolderLock lock(name());
     const auto undisturbed = hold_off_end_of_run();
     if (input_index_) input_index_->commit();
     if (attributes_) attributes_->commit();
+    if (offsets_) offsets_->commit();
+    if (box_) box_->commit();
     vertices_.commit();
     simplices_.commit();
   }
@@ -129,6 +181,10 @@ class NpyMeshWriter : public CheckedMeshWriter {
   std::optional<ArrayOutput> input_index_;
   VertexRecords records_;
   std::optional<ArrayOutput> attributes_;
+  std::optional<ArrayOutput> offsets_;
+  std::uint64_t corners_ = 0;         ///< whose offsets have been written
+  std::vector<std::int8_t> periods_;  ///< of corners that are being written
+  std::optional<ArrayOutput> box_;
 };
 
 }  // namespace
@@ -150,6 +206,10 @@ NpyMeshNames npy_mesh_to_write(const FileSystem& files, const std::string& path,
   };
   if (!contents.has_input_index) refuse_earlier(names.input_index);
   if (!contents.has_attributes) refuse_earlier(names.attributes);
+  if (!contents.is_periodic) {
+    refuse_earlier(names.offsets);
+    refuse_earlier(names.box);
+  }
   return names;
 }
 

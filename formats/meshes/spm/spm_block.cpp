@@ -8,6 +8,7 @@
 #include "formats/blocks/columns.h"
 #include "formats/bytes/bytes.h"
 #include "formats/bytes/longest_vectors.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "formats/meshes/spm/spm_corners.h"
 #include "formats/points/spp/spp_attributes.h"
 #include "formats/points/spp/spp_coordinates.h"
@@ -148,15 +149,6 @@ void append_across(std::vector<std::byte>& out, const MeshStreamHeader& header,
     for (std::size_t s = 0; s < column.size(); ++s) column[s] = corners[s * size + i];
     append_column(out, column);
   }
-}
-
-bool is_offset(CornerOffset offset, const PeriodicBox& box) {
-  if ((static_cast<std::uint8_t>(offset) & kNoOffsetBits) != 0) return false;
-  for (int k = 0; k < 3; ++k) {
-    const int periods = periods_along(offset, k);
-    if (periods < -1 || (periods != 0 && !box.periodic[k])) return false;
-  }
-  return true;
 }
 
 /// How many simplices have offsets. Takes their number and the offsets off the front of `bytes`.

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
+#include <string>
 #include <utility>
 
 #include "formats/blocks/block_stream.h"
 #include "formats/blocks/columns.h"
 #include "formats/meshes/common/import_check.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "formats/meshes/spm/spm_block.h"
 #include "formats/meshes/spm/spm_format.h"
 #include "formats/points/attributes/further_coordinates.h"
@@ -68,10 +69,13 @@ class SpmReader : public MeshStreamReader {
     header_.dimension = static_cast<int>(dimension);
     if (!is_dimension(header_.dimension)) stream_.fail("the dimension is none of 2 to 6");
     const auto flags = stream_.take<std::uint32_t>();
-    constexpr std::uint32_t kPeriodic = 7 * kSpmPeriodicX;
-    constexpr std::uint32_t kKnown = kSpmHasLattice | kSpmHasPoints | kSpmHasExtent |
-                                     kSpmHasInputIndex | kPeriodic | kSpmHasAttributes;
-    if ((flags & ~kKnown) != 0) stream_.fail("unknown flags are set");
+    constexpr std::uint32_t kKnown =
+        kSpmHasLattice | kSpmHasPoints | kSpmHasExtent | kSpmHasInputIndex;
+    constexpr std::uint32_t kOfPeriodic = 7 * kSpmPeriodicX | kSpmHasAttributes;
+    const bool is_periodic = version == kSpmPeriodicVersion;
+    if ((flags & ~(is_periodic ? kKnown | kOfPeriodic : kKnown)) != 0) {
+      stream_.fail("unknown flags are set");
+    }
     header_.has_input_index = (flags & kSpmHasInputIndex) != 0;
     if ((flags & kSpmHasLattice) != 0) {
       header_.lattice = lattice_of(stream_.take<std::array<double, 6>>());
@@ -80,10 +84,7 @@ class SpmReader : public MeshStreamReader {
     }
     if ((flags & kSpmHasPoints) != 0) header_.points = stream_.take<std::uint64_t>();
     if ((flags & kSpmHasExtent) != 0) header_.extent = stream_.take_extent();
-    if (((flags & (kPeriodic | kSpmHasAttributes)) != 0) != (version == kSpmPeriodicVersion)) {
-      stream_.fail("the version and the flags of a periodic mesh do not fit");
-    }
-    if (version == kSpmPeriodicVersion) parse_box(flags);
+    if (is_periodic) parse_box(flags);
     if (version == kSpmAttributesVersion || (flags & kSpmHasAttributes) != 0) {
       header_.attributes = take_attribute_list(stream_);
     }
@@ -102,11 +103,12 @@ class SpmReader : public MeshStreamReader {
     box.box.high = stream_.take<std::array<double, 3>>();
     for (int k = 0; k < 3; ++k) {
       box.periodic[k] = (flags & kSpmPeriodicX << k) != 0;
-      if (box.periodic[k] && (k >= header_.dimension || header_.dimension > 3 ||
-                              !(box.period(k) > 0) || !std::isfinite(box.period(k)))) {
-        stream_.fail("the periodic box is not one of these dimensions");
+      if (box.periodic[k] && k >= header_.dimension) {
+        stream_.fail("z of a mesh of triangles is periodic");
       }
     }
+    const std::string fault = fault_of_box(box, header_.dimension, header_.lattice);
+    if (!fault.empty()) stream_.fail(fault);
   }
 
   void parse_imported(std::vector<std::uint64_t>& imported) {

@@ -71,14 +71,16 @@ bool VtuCells::has(std::uint64_t type) const {
   return std::ranges::find(types_.runs(), type, &ValueRuns::Run::value) != types_.runs().end();
 }
 
-void VtuCells::put_into(Mesh& mesh, const std::string& file) {
+bool VtuCells::put_into(Mesh& mesh, const std::string& file) {
   if (last_end_ != corners_.size()) {
     throw BadInput(file, fmt::format("the cells have {} corners by their offsets, but {} by their "
                                      "connectivity; the file is corrupt",
                                      last_end_, corners_.size()));
   }
   const bool in_space = has(vtu::kTetrahedron);
-  if (!in_space && !has(vtu::kTriangle) && !has(vtu::kPolygon) && !has(vtu::kQuadrilateral)) return;
+  if (!in_space && !has(vtu::kTriangle) && !has(vtu::kPolygon) && !has(vtu::kQuadrilateral)) {
+    return types_.runs().empty();
+  }
   mesh.header.dimension = in_space ? 3 : 2;
   const std::uint64_t simplex = in_space ? vtu::kTetrahedron : vtu::kTriangle;
   const bool all_alike = types_.runs().size() == 1 && types_.runs()[0].value == simplex &&
@@ -90,6 +92,7 @@ void VtuCells::put_into(Mesh& mesh, const std::string& file) {
   } else {
     put_one_by_one(mesh, file);
   }
+  return all_alike;
 }
 
 void VtuCells::put_one_by_one(Mesh& mesh, const std::string& file) const {

@@ -49,8 +49,9 @@ class VtuCells {
   /// Puts the simplices into the mesh, whose vertices are all there, with its dimension and its
   /// notices of what was cut and left out. If there are neither tetrahedra nor faces, the mesh is
   /// left as it is. As many ends as types must have been added. Throws Failure with the file's name
-  /// for cells that the corners do not make, and for polygons that cannot be cut.
-  void put_into(Mesh& mesh, const std::string& file);
+  /// for cells that the corners do not make, and for polygons that cannot be cut. Returns whether
+  /// the simplices are the cells, all of them in their order.
+  bool put_into(Mesh& mesh, const std::string& file);
 
  private:
   [[nodiscard]] bool has(std::uint64_t type) const;

@@ -21,6 +21,7 @@ constinit const MeshFormat kVtuMesh = {
     .most_dimension = 3,
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
+    .holds_offsets = true,
     .stands_in_parts = true,
     .recognises =
         [](std::string_view text) {

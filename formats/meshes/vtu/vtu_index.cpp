@@ -37,6 +37,12 @@ std::string pvtu_text(std::span<const std::string> names, const MeshStreamHeader
     text += array(each.type, each.name, each.components);
   }
   text += "    </PPointData>\n";
+  if (header.periodic) {
+    text += "    <PCellData>\n";
+    text += array("Int8", vtu::kPeriodicOffsets,
+                  static_cast<std::size_t>((header.dimension + 1) * header.dimension));
+    text += "    </PCellData>\n";
+  }
   for (const std::string& name : names) {
     text += fmt::format("    <Piece Source=\"{}\"/>\n", xml_escaped(name));
   }

@@ -12,6 +12,10 @@ namespace spillway::formats::vtu {
 inline constexpr const char* kDimension = "spillway_dimension";
 inline constexpr const char* kLattice = "spillway_lattice";
 inline constexpr const char* kCrs = "spillway_crs";
+// Of a periodic mesh, a number for each axis.
+inline constexpr const char* kPeriodicLow = "PeriodicLow";
+inline constexpr const char* kPeriodicHigh = "PeriodicHigh";
+inline constexpr const char* kPeriodicAxes = "PeriodicAxes";
 
 // Arrays of points and cells that VTK names.
 inline constexpr const char* kPoints = "Points";
@@ -22,6 +26,9 @@ inline constexpr const char* kTypes = "types";
 // Point arrays.
 inline constexpr const char* kInputIndex = "input_index";
 inline constexpr const char* kGlobalIds = "GlobalPointIds";  // what VTK calls it
+
+// Cell arrays.
+inline constexpr const char* kPeriodicOffsets = "periodic_offsets";
 
 // Cell types.
 inline constexpr std::uint8_t kVertex = 1;

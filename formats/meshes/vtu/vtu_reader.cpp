@@ -22,6 +22,7 @@
 #include "formats/meshes/vtu/vtu_cells.h"
 #include "formats/meshes/vtu/vtu_header.h"
 #include "formats/meshes/vtu/vtu_names.h"
+#include "formats/meshes/vtu/vtu_periodic.h"
 #include "formats/meshes/vtu/vtu_tags.h"
 #include "formats/meshes/vtu/vtu_values.h"
 #include "formats/points/attributes/attribute_names.h"
@@ -53,8 +54,10 @@ class VtuReader {
     read_tags();
     check_arrays();
     put_attributes();
-    cells_.put_into(mesh_, input_.name());
+    const bool is_plain = cells_.put_into(mesh_, input_.name());
     if (mesh_.header.dimension == 0) fail_for_point_cloud(input_.name(), "VTU");
+    const std::string fault = periodic_.put_into(mesh_, is_plain);
+    if (!fault.empty()) throw BadInput(input_.name(), fault);
     return std::move(mesh_);
   }
 
@@ -101,7 +104,9 @@ class VtuReader {
     const bool is_read =
         (section_ == "Cells" && is_one_of({vtu::kConnectivity, vtu::kOffsets, vtu::kTypes})) ||
         (section_ == "PointData" && is_one_of({vtu::kInputIndex})) ||
-        (section_ == "FieldData" && is_one_of({vtu::kDimension, vtu::kLattice, vtu::kCrs}));
+        (section_ == "CellData" && is_one_of({vtu::kPeriodicOffsets})) ||
+        (section_ == "FieldData" &&
+         (is_one_of({vtu::kDimension, vtu::kLattice, vtu::kCrs}) || VtuPeriodic::has_field(name)));
     return is_read ? std::optional(std::string(name)) : std::nullopt;
   }
 
@@ -118,6 +123,7 @@ class VtuReader {
     if (name) {
       const VtuArray array = vtu_array(tags_, *name);
       if (section_ != "FieldData") check_array(array);
+      if (section_ == "CellData") begin_periodic_offsets();
       if (!seen_.insert(array.name).second) {
         tags_.fail(fmt::format("there is a second {}", array.name));
       }
@@ -160,14 +166,24 @@ class VtuReader {
 
   void check_array(const VtuArray& array) const {
     if (!cell_count_) tags_.fail("an array of points or cells stands outside of a Piece");
-    const bool is_cells = section_ == "Cells";
+    const bool is_cells = section_ == "Cells" || section_ == "CellData";
     if (is_cells && !is_integer(array.type)) {
       tags_.fail(fmt::format("{} must be integers", array.name));
     }
+    if (section_ == "CellData") return;  // their number is known when the cells are
     const std::uint64_t wanted = array.name == vtu::kPoints ? 3 : 1;
     if (components() != wanted) {
       tags_.fail(fmt::format("the array {} needs {} components", array.name, wanted));
     }
+  }
+
+  void begin_periodic_offsets() {
+    const std::uint64_t each = components();
+    if (each == 0 || each > kMostComponents) {
+      tags_.fail(
+          fmt::format("the array {} cannot have {} components", vtu::kPeriodicOffsets, each));
+    }
+    periodic_.begin_offsets(each);
   }
 
   /// Arrays in the order in which they stand in the file, which is read once.
@@ -215,6 +231,8 @@ class VtuReader {
       read_types(values);
     } else if (array.name == vtu::kInputIndex) {
       read_input_index(values);
+    } else if (array.name == vtu::kPeriodicOffsets) {
+      read_periodic_offsets(values);
     } else {
       read_field(array.name, values);
     }
@@ -289,6 +307,17 @@ class VtuReader {
     });
   }
 
+  void read_periodic_offsets(VtuValues& values) {
+    const std::uint64_t each = periodic_.numbers_per_cell();
+    const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / each;
+    const std::uint64_t declared = std::min(*cell_count_, most) * each;
+    read_numbers(vtu::kPeriodicOffsets, values, declared, [&](std::uint64_t i) {
+      if (periodic_.add_offset(values.number())) return;
+      fail(fmt::format("cell {} has a corner with the offset {}, which is none of -1, 0 and 1",
+                       i / each, values.number()));
+    });
+  }
+
   void read_attribute(const VtuArray& array, VtuValues& values) {
     const std::size_t size = size_of(array.type);
     ReadAttribute& read = attributes_.emplace_back();
@@ -341,6 +370,8 @@ class VtuReader {
       if (!mesh_.header.lattice) {
         fail(fmt::format("{} must be six numbers: three positive scales, three offsets", name));
       }
+    } else if (VtuPeriodic::has_field(name)) {
+      periodic_.set_field(name, std::move(numbers));
     } else {
       for (const double code : numbers) {
         if (!(code >= 1 && code <= 255)) fail(fmt::format("{} must be bytes of text", name));
@@ -379,6 +410,7 @@ class VtuReader {
   UniqueNames names_;               // of these
   std::vector<VtuArray> appended_;  // those whose values are still to come
   VtuCells cells_;
+  VtuPeriodic periodic_;
   Mesh mesh_;
 };
 

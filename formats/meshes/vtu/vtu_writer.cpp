@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "formats/meshes/common/checked_mesh_writer.h"
 #include "formats/meshes/common/global_ids.h"
 #include "formats/meshes/common/mesh_notes.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "formats/meshes/common/vertex_records.h"
 #include "formats/meshes/vtu/vtu_names.h"
 #include "formats/meshes/vtu/vtu_point_arrays.h"
@@ -57,6 +59,12 @@ struct PointArray {
 
   Source source = Source::kCoordinates;
   VtuPointArray declared;
+};
+
+/// Offsets of corners one after another.
+struct OffsetRun {
+  std::uint64_t first_corner = 0;
+  std::vector<CornerOffset> offsets;
 };
 
 class VtuWriter : public CheckedMeshWriter {
@@ -102,6 +110,14 @@ class VtuWriter : public CheckedMeshWriter {
     return header().simplices * sizeof(std::int64_t);
   }
 
+  /// Numbers of periods of a cell.
+  [[nodiscard]] std::size_t periods_per_cell() const {
+    return corners_per_simplex() * static_cast<std::size_t>(header().dimension);
+  }
+  [[nodiscard]] std::uint64_t periods_bytes() const {
+    return header().simplices * periods_per_cell();
+  }
+
   [[nodiscard]] std::string field_data() const {
     std::string text = inline_array(vtu::kDimension, "Int32", std::array{header().dimension});
     if (header().lattice) {
@@ -110,6 +126,7 @@ class VtuWriter : public CheckedMeshWriter {
                      header().lattice->offset.end());
       text += inline_array(vtu::kLattice, "Float64", numbers);
     }
+    if (header().periodic) text += periodic_data(plain_box(*header().periodic, header().dimension));
     const std::string crs = one_line(header().crs);
     if (!crs.empty()) {
       const std::vector<unsigned> codes = [&] {
@@ -120,6 +137,15 @@ class VtuWriter : public CheckedMeshWriter {
       text += inline_array(vtu::kCrs, "UInt8", codes);
     }
     return text;
+  }
+
+  [[nodiscard]] std::string periodic_data(const PeriodicBox& box) const {
+    const auto axes = static_cast<std::size_t>(header().dimension);
+    std::vector<int> periodic;
+    for (std::size_t k = 0; k < axes; ++k) periodic.push_back(box.periodic[k] ? 1 : 0);
+    return inline_array(vtu::kPeriodicLow, "Float64", std::span(box.box.low).first(axes)) +
+           inline_array(vtu::kPeriodicHigh, "Float64", std::span(box.box.high).first(axes)) +
+           inline_array(vtu::kPeriodicAxes, "Int8", periodic);
   }
 
   [[nodiscard]] std::string header_text() const {
@@ -146,8 +172,14 @@ class VtuWriter : public CheckedMeshWriter {
     text += arrays.declare("offsets", "Int64", 1, offsets_bytes());
     text += "        ";
     text += arrays.declare("types", "UInt8", 1, header().simplices);
+    text += "      </Cells>\n";
+    if (header().periodic) {
+      text += "      <CellData>\n        ";
+      text += arrays.declare(vtu::kPeriodicOffsets, "Int8", periods_per_cell(), periods_bytes());
+      text += "      </CellData>\n";
+    }
     text +=
-        "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n"
+        "    </Piece>\n  </UnstructuredGrid>\n"
         "  <AppendedData encoding=\"raw\">\n_";
     return text;
   }
@@ -254,6 +286,28 @@ class VtuWriter : public CheckedMeshWriter {
     output_.append(as_text(std::as_bytes(corners)));
   }
 
+  void put_offsets(std::uint64_t first_corner, std::span<const CornerOffset> offsets) override {
+    across_.push_back({first_corner, {offsets.begin(), offsets.end()}});
+  }
+
+  /// Of all corners; those that got none have 0.
+  void append_periods() {
+    append_value(periods_bytes());
+    const int axes = header().dimension;
+    std::uint64_t corner = 0;
+    const auto append = [&](CornerOffset offset) {
+      for (int k = 0; k < axes; ++k) {
+        append_value(static_cast<std::int8_t>(periods_along(offset, k)));
+      }
+      ++corner;
+    };
+    for (const OffsetRun& run : across_) {
+      while (corner < run.first_corner) append(kNoOffset);
+      for (const CornerOffset offset : run.offsets) append(offset);
+    }
+    while (corner < header().simplices * corners_per_simplex()) append(kNoOffset);
+  }
+
   void complete() override {
     append_value(offsets_bytes());
     for (std::uint64_t cell = 1; cell <= header().simplices; ++cell) {
@@ -262,6 +316,7 @@ class VtuWriter : public CheckedMeshWriter {
     append_value(header().simplices);
     const std::uint8_t type = header().dimension == 2 ? vtu::kTriangle : vtu::kTetrahedron;
     for (std::uint64_t cell = 0; cell < header().simplices; ++cell) append_value(type);
+    if (header().periodic) append_periods();
     output_.append("\n  </AppendedData>\n</VTKFile>\n");
     output_.commit();
   }
@@ -283,6 +338,7 @@ class VtuWriter : public CheckedMeshWriter {
   std::vector<std::vector<std::byte>> held_;  ///< of those after the first
   std::optional<GlobalIds> ids_;
   std::vector<std::byte> column_;
+  std::vector<OffsetRun> across_;  ///< of simplices across the sides of the box, which are few
 };
 
 }  // namespace

@@ -65,7 +65,7 @@ class EngineSink : public RunSink {
     if (std::exchange(is_used_, true)) {
       throw InvalidArgument("a sink takes one mesh, and this one has had its own");
     }
-    if (start.header.periodic) check_periodic();
+    if (start.header.periodic) check_periodic(start.header.dimension);
     return open(start);
   }
 
@@ -91,9 +91,9 @@ class EngineSink : public RunSink {
   [[nodiscard]] virtual unsigned feeding_threads(unsigned threads) const { return threads; }
   /// Whether begin_again() takes all blocks back.
   [[nodiscard]] virtual bool can_begin_again() const { return false; }
-  /// Throws Failure(kInvalidArgument) unless it holds simplices that cross the sides of a periodic
-  /// box.
-  virtual void check_periodic() const {
+  /// Throws Failure(kInvalidArgument) unless it holds simplices of so many dimensions that cross
+  /// the sides of a periodic box.
+  virtual void check_periodic(int /*dimension*/) const {
     throw InvalidArgument("this output cannot be made of a periodic triangulation: make a mesh");
   }
   /// Whether it is something else than a mesh, which must have a simplex then.

@@ -165,15 +165,15 @@ bool MeshFile::goes_on() const {
 
 bool MeshFile::can_begin_again() const { return tiling_ || can_be_tried(target_.path); }
 
-void MeshFile::check_periodic() const {
+void MeshFile::check_periodic(int dimension) const {
   if (tiling_) {
     throw InvalidArgument("a periodic mesh is not written in tiles or clipped: write one file");
   }
   if (target_.format->holds_offsets) return;
+  const auto hold = [](const MeshFormat& other) { return other.holds_offsets; };
   throw InvalidArgument(
-      fmt::format("{} cannot hold a periodic mesh, whose triangles cross the sides of the box; "
-                  "choose spm, npy or vtu",
-                  target_.format->title),
+      fmt::format("{} cannot hold a periodic mesh, whose {} cross the sides of the box; choose {}",
+                  target_.format->title, simplices_of(dimension), list_of_formats(hold, "or")),
       {.file = target_.path});
 }
 

@@ -47,7 +47,7 @@ class MeshFile final : public OwnSink<spillway::MeshSink> {
   /// What has left through a pipe is gone.
   BlockSink* begin_again() override;
   [[nodiscard]] bool can_begin_again() const override;
-  void check_periodic() const override;
+  void check_periodic(int dimension) const override;
   void finalize(RunWatch& watch, Report& report, OtherShares& others) override;
   void identify(RunIdentity& identity) const override;
   [[nodiscard]] bool goes_on() const override;

@@ -158,7 +158,8 @@ MeshHeader OpenedMesh::header() const {
           .has_input_index = mesh.header.has_input_index,
           .crs = mesh.header.crs,
           .lattice = public_lattice(stream_lattice(mesh)),
-          .attributes = mesh.header.attributes.attributes()};
+          .attributes = mesh.header.attributes.attributes(),
+          .periodic = mesh.header.periodic};
 }
 
 bool OpenedMesh::read(MeshBlock& block) {

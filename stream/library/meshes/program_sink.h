@@ -23,7 +23,7 @@ class ProgramSink final : public EngineSink, private BlockSink {
     return attribute_choice(sink_.attributes_wanted());
   }
   [[nodiscard]] bool is_product() const override { return false; }
-  void check_periodic() const override {}
+  void check_periodic(int /*dimension*/) const override {}
   void identify(RunIdentity& identity) const override {
     identity.add("output", "a sink of the program");
   }

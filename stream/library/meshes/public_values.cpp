@@ -89,7 +89,15 @@ std::vector<CornerOffset> stream_offsets(const MeshBlock& block, const MeshStrea
       }
     }
     offsets.push_back(corner_offset(periods));
+    if (i / axes % (axes + 1) == 0 && offsets.back() != kNoOffset) {
+      throw InvalidArgument("the first corner of a simplex has an offset");
+    }
   }
+  // Those of the first simplices, while these have none, are not told.
+  const auto first =
+      std::ranges::find_if(offsets, [](CornerOffset offset) { return offset != kNoOffset; });
+  const auto corners = static_cast<std::ptrdiff_t>(axes) + 1;
+  offsets.erase(offsets.begin(), offsets.begin() + (first - offsets.begin()) / corners * corners);
   return offsets;
 }
 
@@ -260,6 +268,7 @@ MeshStreamBlock ProgramBlocks::next(const MeshBlock& block) {
   check_further(stream);
   stream.corners.reserve(block.corners.size());
   for (const std::uint64_t vertex : block.corners) stream.corners.push_back(number_of(vertex));
+  stream.offsets = stream_offsets(block, header_);
   stream.finalized.reserve(block.finalized.size());
   for (const std::uint64_t vertex : block.finalized) {
     stream.finalized.push_back(number_of(vertex));

@@ -7,12 +7,14 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "formats/blocks/block.h"
 #include "formats/meshes/common/divided_block.h"
 #include "formats/meshes/common/mesh_block.h"
+#include "formats/meshes/common/periodic_mesh.h"
 #include "src/error.h"
 #include "src/geometry/dimensions.h"
 #include "src/geometry/simplex_name.h"
@@ -57,6 +59,7 @@ FacetCounts count_facets(const Mesh& mesh) {
 }
 
 FacetCounts facets_of(const Mesh& mesh) {
+  if (mesh.header.periodic) return {.single = checker::count_periodic_hull(mesh)};
   return with_dimension(mesh.header.dimension, [&](auto d) { return count_facets<d>(mesh); });
 }
 
@@ -92,6 +95,20 @@ std::vector<MeshStreamBlock> blocks_of(MeshStreamBlock whole, std::size_t corner
   const std::size_t size = std::clamp<std::size_t>(
       kLargestBlock / 8 / std::max<std::size_t>(1, most / whole.vertices.size()), 1, kMostVertices);
   return divided(whole, corners, attributes.record_size(), size);
+}
+
+/// The corners, those of simplices across the sides of a periodic box at the end, and their offsets.
+void put_those_across_last(const Mesh& mesh, MeshStreamBlock& block) {
+  const std::size_t size = mesh.corners_per_simplex();
+  for (const bool across : {false, true}) {
+    for (std::size_t at = 0; at < mesh.corners.size(); at += size) {
+      const auto offsets = std::span(mesh.offsets).subspan(at, size);
+      if (is_across(offsets) != across) continue;
+      const auto corners = std::span(mesh.corners).subspan(at, size);
+      block.corners.insert(block.corners.end(), corners.begin(), corners.end());
+      if (across) block.offsets.insert(block.offsets.end(), offsets.begin(), offsets.end());
+    }
+  }
 }
 
 MeshTotals totals_of(const Mesh& mesh) {
@@ -131,6 +148,7 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
   header_.lattice = mesh.header.lattice;
   header_.crs = mesh.header.crs;
   header_.attributes = mesh.header.attributes;
+  header_.periodic = mesh.header.periodic;
   MeshStreamBlock block;
   block.vertices = stream_vertices(mesh, header_.lattice);
   for (const LatticePoint& vertex : block.vertices) {
@@ -138,7 +156,11 @@ WholeMesh::WholeMesh(Mesh mesh, const std::string& name, bool all_totals)
   }
   block.input_index = std::move(mesh.input_index);
   block.attributes = std::move(mesh.attributes);
-  block.corners.assign(mesh.corners.begin(), mesh.corners.end());
+  if (header_.periodic) {
+    put_those_across_last(mesh, block);
+  } else {
+    block.corners.assign(mesh.corners.begin(), mesh.corners.end());
+  }
   block.finalized.resize(block.vertices.size());
   std::iota(block.finalized.begin(), block.finalized.end(), 0U);
   blocks_ = blocks_of(std::move(block), mesh.corners_per_simplex(), header_.attributes);

@@ -151,6 +151,7 @@ MeshInfo describe_whole(OpenedMesh& file, RunWatch& watch) {
   info.lattice = lattice_info(mesh.header.lattice);
   info.crs = mesh.header.crs;
   info.attributes = mesh.header.attributes.attributes();
+  info.periodic = mesh.header.periodic;
   return info;
 }
 
@@ -185,6 +186,7 @@ MeshInfo describe_stream(OpenedMesh& file, RunWatch& watch) {
   info.lattice = lattice_info(reader.header().lattice);
   info.crs = reader.header().crs;
   info.attributes = reader.header().attributes.attributes();
+  info.periodic = reader.header().periodic;
   info.peak_live_vertices = found.peak_live_vertices;
   return info;
 }

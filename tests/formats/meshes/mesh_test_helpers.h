@@ -71,7 +71,9 @@ inline void write_mesh(MeshWriter& writer, const Mesh& mesh, std::size_t block =
   const std::span<const std::uint64_t> corners(mesh.corners);
   const std::size_t step = block * mesh.corners_per_simplex();
   for (std::size_t at = 0; at < corners.size(); at += step) {
-    writer.write_simplices(corners.subspan(at, std::min(step, corners.size() - at)));
+    const std::size_t count = std::min(step, corners.size() - at);
+    writer.write_simplices(corners.subspan(at, count));
+    if (mesh.header.periodic) writer.write_offsets(at, std::span(mesh.offsets).subspan(at, count));
   }
   writer.finish();
 }

@@ -321,7 +321,12 @@ TEST(Spm, BadHeader) {
   const auto error = [](const std::string& header) {
     return error_of_stream("a.spm", stream_of({{kSpmHeader, header}}));
   };
-  EXPECT_THAT(error(header_content(3, 2, 0)), HasSubstr("version 3 of spm is not known"));
+  EXPECT_THAT(error(header_content(4, 2, 0)), HasSubstr("version 4 of spm is not known"));
+  const std::string box(6 * sizeof(double), '\0');
+  EXPECT_THAT(error(header_content(3, 2, 0) + box), HasSubstr("no periodic axis"));
+  EXPECT_THAT(error(header_content(3, 2, 16) + box), HasSubstr("no length along x"));
+  EXPECT_THAT(error(header_content(3, 2, 64) + box), HasSubstr("z of a mesh of triangles"));
+  EXPECT_THAT(error(header_content(3, 2, 256) + box), HasSubstr("unknown flags"));
   EXPECT_THAT(error(header_content(1, 7, 0)), HasSubstr("none of 2 to 6"));
   EXPECT_THAT(error(header_content(1, 4, 0)), HasSubstr("coordinates beyond z are missing"));
   EXPECT_THAT(error(header_content(1, 2, 16)), HasSubstr("unknown flags"));

@@ -46,6 +46,40 @@ TEST(PublicHeader, SaysWhatAStreamSaysAndBackAgain) {
   EXPECT_FALSE(unknown.extent);
 }
 
+TEST(PublicHeader, TellsThePeriodicBox) {
+  MeshHeader header;
+  header.periodic = PeriodicBox{.box = {{0, 0, 0}, {4, 4, 0}}, .periodic = {true, false, false}};
+  EXPECT_EQ(public_header(stream_header(header)).periodic, header.periodic);
+  header.periodic->box.high[0] = 0;
+  EXPECT_THAT(error_of([&] { stream_header(header); }), HasSubstr("no length along x"));
+}
+
+TEST(ProgramBlocks, HaveTheOffsetsOfTheirCorners) {
+  MeshHeader header;
+  header.periodic = PeriodicBox{.box = {{0, 0, 0}, {4, 4, 0}}, .periodic = {true, false, false}};
+  const MeshBlock block = {.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}},
+                           .corners = {0, 1, 2, 2, 0, 1},
+                           .offsets = {0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 0}};
+  const MeshStreamBlock stream = ProgramBlocks(header).next(block);
+  ASSERT_EQ(stream.offsets.size(), 3U);
+  EXPECT_EQ(periods_along(stream.offsets[1], 0), 1);
+  EXPECT_EQ(periods_along(stream.offsets[2], 0), -1);
+  EXPECT_EQ(public_block(stream_header(header), MeshStreamBlock(stream), 0).offsets, block.offsets);
+
+  const auto error = [&](std::size_t number, std::int8_t periods) {
+    MeshBlock wrong = block;
+    wrong.offsets[number] = periods;
+    return error_of([&] { ProgramBlocks(header).next(wrong); });
+  };
+  EXPECT_THAT(error(8, 2), HasSubstr("the offset 2 along x, beyond 1"));
+  EXPECT_THAT(error(9, 1), HasSubstr("the offset 1 along y, beyond 0"));
+  EXPECT_THAT(error(6, 1), HasSubstr("the first corner of a simplex has an offset"));
+  MeshBlock none = block;
+  none.offsets.clear();
+  EXPECT_THAT(error_of([&] { ProgramBlocks(header).next(none); }),
+              HasSubstr("6 corners, but 0 offsets"));
+}
+
 TEST(PublicHeader, OfNoPointsHasNoExtent) {
   MeshStreamHeader stream;
   stream.extent = Box<3>{};

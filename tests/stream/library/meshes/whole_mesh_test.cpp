@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,37 @@ TEST(WholeMesh, GivesWhatItsVerticesCarry) {
   ASSERT_TRUE(stream.read(block));
   EXPECT_EQ(block.attributes, expected);
   EXPECT_FALSE(stream.read(block));
+}
+
+TEST(WholeMesh, HasSimplicesAcrossThePeriodicBoxAtTheEnd) {
+  // A row of four squares whose ends are one, each of two triangles; it is open along y.
+  Mesh mesh;
+  mesh.header.dimension = 2;
+  mesh.header.periodic =
+      PeriodicBox{.box = {{0, 0, 0}, {4, 0, 0}}, .periodic = {true, false, false}};
+  for (std::uint64_t x = 0; x < 4; ++x) {
+    mesh.vertices.push_back({double(x), 0, 0});
+    mesh.vertices.push_back({double(x), 1, 0});
+  }
+  const CornerOffset beyond = corner_offset(std::array{1, 0});
+  for (std::uint64_t square = 3; square < 7; ++square) {
+    const std::uint64_t x = square % 4;
+    const std::uint64_t next = (x + 1) % 4;
+    const CornerOffset there = x == 3 ? beyond : kNoOffset;
+    mesh.corners.insert(mesh.corners.end(),
+                        {2 * x, 2 * next, 2 * next + 1, 2 * x, 2 * next + 1, 2 * x + 1});
+    mesh.offsets.insert(mesh.offsets.end(), {kNoOffset, there, there, kNoOffset, there, kNoOffset});
+  }
+  EXPECT_EQ(count_boundary_facets(mesh), 8U);
+  WholeMesh stream(mesh, "a", true);
+  EXPECT_EQ(stream.totals().hull_facets, 8U);
+  EXPECT_EQ(stream.header().periodic, mesh.header.periodic);
+  MeshStreamBlock block;
+  ASSERT_TRUE(stream.read(block));
+  EXPECT_EQ(block.corners.size(), 24U);
+  EXPECT_EQ(block.offsets, (std::vector{kNoOffset, beyond, beyond, kNoOffset, beyond, kNoOffset}));
+  EXPECT_EQ(std::vector(block.corners.end() - 6, block.corners.end()),
+            (std::vector<std::uint32_t>{6, 0, 1, 6, 1, 7}));
 }
 
 TEST(WholeMesh, ComesInSeveralBlocksWhereOneWouldBeTooLarge) {
