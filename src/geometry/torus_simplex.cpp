@@ -1,8 +1,11 @@
 #include "src/geometry/torus_simplex.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "src/error.h"
 #include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/determinants.h"
 #include "src/geometry/predicates.h"
@@ -53,29 +56,6 @@ Periods<D> periods_of_centre(const Torus& torus, const Point<D>& lowest, const P
   return periods;
 }
 
-/// Whether the facet's plane is along all periodic axes.
-template <int D>
-bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) {
-  std::array<int, D> open{};
-  int count = 0;
-  for (int k = 0; k < D; ++k) {
-    if (!torus.periodic(k)) open[count++] = k;
-  }
-  if (count == 1) {
-    return std::all_of(facet.begin(), facet.end(), [&](const Point<D>& point) {
-      return point[open[0]] == facet[0][open[0]];
-    });
-  }
-  if constexpr (D == 3) {
-    if (count == 2) {
-      std::array<Point<2>, 3> seen;
-      for (int i = 0; i < 3; ++i) seen[i] = {facet[i][open[0]], facet[i][open[1]]};
-      return orientation<2>(seen) == 0;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 template <int D>
@@ -96,6 +76,27 @@ SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D +
 }
 
 template <int D>
+bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) {
+  std::array<int, D> open{};
+  int count = 0;
+  for (int k = 0; k < D; ++k) {
+    if (!torus.periodic(k)) open[count++] = k;
+  }
+  if (count == 1) {
+    return std::all_of(facet.begin(), facet.end(),
+                       [&](const Point<D>& point) { return point[open[0]] == facet[0][open[0]]; });
+  }
+  if constexpr (D == 3) {
+    if (count == 2) {
+      std::array<Point<2>, 3> seen;
+      for (int i = 0; i < 3; ++i) seen[i] = {facet[i][open[0]], facet[i][open[1]]};
+      return orientation<2>(seen) == 0;
+    }
+  }
+  return false;
+}
+
+template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet) {
   if (!is_along_periods<D>(torus, facet)) return false;
   const Point<D>& lowest = *std::min_element(facet.begin(), facet.end());
@@ -104,9 +105,23 @@ bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& fac
   return periods_of_centre<D>(torus, lowest, middle_of<D>(differences)) == Periods<D>{};
 }
 
-#define SPILLWAY_INSTANTIATE(D)                                                              \
-  template SimplexPlace<D> place_simplex<D>(                                                 \
-      const Torus&, const std::array<Point<D>, D + 1>&, const SortedCorners<D>&);            \
+void refuse_long_simplices(const Torus& torus, const std::array<double, 3>& reach) {
+  for (int k = 0; k < torus.dimension(); ++k) {
+    const double share = reach[k] / torus.period(k);
+    if (share < 0.5) continue;
+    throw Failure(
+        fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of "
+                    "the period long along {}, and all must be shorter than half of it; add "
+                    "points there, or repeat points and box two or three times along that axis",
+                    torus.dimension() == 2 ? "triangle" : "tetrahedron", share, "xyz"[k]),
+        ErrorCode::kDegenerateInput);
+  }
+}
+
+#define SPILLWAY_INSTANTIATE(D)                                                               \
+  template SimplexPlace<D> place_simplex<D>(const Torus&, const std::array<Point<D>, D + 1>&, \
+                                            const SortedCorners<D>&);                         \
+  template bool is_along_periods<D>(const Torus&, const std::array<Point<D>, D>&);            \
   template bool is_chosen_hull_facet<D>(const Torus&, const std::array<Point<D>, D>&);
 SPILLWAY_INSTANTIATE(2)
 SPILLWAY_INSTANTIATE(3)

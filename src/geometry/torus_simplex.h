@@ -2,6 +2,7 @@
 // Simplices of a periodic triangulation: which of all copies of one stands for it.
 
 #include <array>
+#include <utility>
 
 #include "src/geometry/point.h"
 #include "src/geometry/torus.h"
@@ -31,8 +32,8 @@ struct SortedCorners {
 template <int D>
 struct SimplexPlace {
   Periods<D> periods;  ///< in which copy of the box its centre lies
-  Point<D> centre;      ///< of its circumsphere, within 2^-30 of a period along periodic axes
-  double radius;        ///< not below the true one
+  Point<D> centre;     ///< of its circumsphere, within 2^-30 of a period along periodic axes
+  double radius;       ///< not below the true one
 
   [[nodiscard]] bool stands_for_all() const { return periods == Periods<D>{}; }
 };
@@ -42,11 +43,21 @@ template <int D>
 SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners,
                               const SortedCorners<D>& sorted);
 
+/// Whether the line or plane of a facet is along all periodic axes: of the hull of some copies, only
+/// such facets are those of the hull of all copies.
+template <int D>
+bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet);
+
 /// Whether a facet of the hull of some copies is one of the hull of all copies, as its plane is
 /// along all periodic axes, and stands for all copies of it: the middle of the box around it lies in
 /// the torus' box.
 template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet);
+
+/// Throws Failure(kDegenerateInput) if the simplices of a closed torus, which are up to so long along
+/// each axis, may be half a period long: those of a triangulation are told apart by their vertices
+/// if none is (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
+void refuse_long_simplices(const Torus& torus, const std::array<double, 3>& reach);
 
 /// How long the box around the corners is along an axis.
 template <int D>

@@ -10,9 +10,9 @@
 
 #include "formats/meshes/spool/mesh_spool.h"
 #include "src/error.h"
+#include "src/geometry/margin_survey.h"
 #include "src/parallel/parallel.h"
 #include "stream/ground/repeated_points.h"
-#include "stream/periodic/margin_survey.h"
 #include "stream/periodic/periodic_blocks.h"
 #include "stream/periodic/periodic_points.h"
 #include "stream/source/joined_inputs.h"
@@ -101,7 +101,7 @@ class PeriodicRun {
       points_.decode(slots[slot].piece, slots[slot].block);
     };
     const auto take = [&](std::size_t slot) {
-      if (torus_.closed()) survey.add(slots[slot].block.points);
+      if (torus_.closed()) survey.add(std::span<const LatticePoint>(slots[slot].block.points));
       count += slots[slot].block.size();
     };
     const std::vector<PipelineStep> steps = {{.in_order = false, .work = decode},
@@ -170,20 +170,8 @@ class PeriodicRun {
         fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
   }
 
-  /// The simplices of a triangulation are told apart by their vertices if none is half a period
-  /// long along any axis (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
   void refuse_few_points(const TorusProof& proof) const {
-    if (!torus_.closed()) return;
-    for (int k = 0; k < torus_.dimension(); ++k) {
-      const double share = proof.reach[k] / torus_.period(k);
-      if (share < 0.5) continue;
-      throw Failure(
-          fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of "
-                      "the period long along {}, and all must be shorter than half of it; add "
-                      "points there, or repeat points and box two or three times along that axis",
-                      torus_.dimension() == 2 ? "triangle" : "tetrahedron", share, "xyz"[k]),
-          ErrorCode::kDegenerateInput);
-    }
+    if (torus_.closed()) refuse_long_simplices(torus_, proof.reach);
   }
 
   void end(PeriodicBlocks& blocks, Report& report) const {
@@ -205,8 +193,8 @@ class PeriodicRun {
 
 void check_periodic(const TriangulateOptions& options, const EngineSink& sink) {
   if (options.dimension > 3) {
-    throw InvalidArgument(fmt::format(
-        "periodic boxes have 2 or 3 dimensions, not {}", options.dimension));
+    throw InvalidArgument(
+        fmt::format("periodic boxes have 2 or 3 dimensions, not {}", options.dimension));
   }
   if (options.max_edge) {
     throw InvalidArgument(

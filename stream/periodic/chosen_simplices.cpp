@@ -52,7 +52,7 @@ bool ChosenSimplices<D>::choose(const Corners& corners) {
   const SortedCorners<D> sorted(points);
   const SimplexPlace<D> place = place_simplex<D>(domain_.torus(), points, sorted);
   const bool chosen = place.stands_for_all();
-  if ((chosen || deep > 0) && reaches_beyond(place)) ++proof_.beyond_margin;
+  if ((chosen || deep > 0) && !domain_.has_sphere(place)) ++proof_.beyond_margin;
   if (!chosen) return false;
   if (!all_near_) note_reach(points);
   for (int left_out = 0; left_out <= D; ++left_out) {
@@ -126,20 +126,6 @@ void ChosenSimplices<D>::note_reach(const std::array<Point<D>, D + 1>& corners) 
     if (!domain_.torus().periodic(k)) continue;
     proof_.reach[k] = std::max(proof_.reach[k], geometry::reach<D>(corners, k));
   }
-}
-
-template <int D>
-bool ChosenSimplices<D>::reaches_beyond(const SimplexPlace<D>& place) const {
-  if (domain_.widest()) return false;
-  const Torus& torus = domain_.torus();
-  for (int k = 0; k < D; ++k) {
-    if (!torus.periodic(k)) continue;
-    const double margin = domain_.margin(k);
-    const bool inside = place.centre[k] - place.radius > torus.low(k) - margin &&
-                        place.centre[k] + place.radius < torus.high(k) + margin;
-    if (!inside) return true;
-  }
-  return false;
 }
 
 /// By the facet's corners in their order, each by the point of the box that it is a copy of, and by

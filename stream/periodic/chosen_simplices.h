@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "src/delaunay/common/triangulation.h"
+#include "src/geometry/periodic_domain.h"
 #include "src/geometry/point.h"
 #include "src/geometry/torus_simplex.h"
-#include "stream/periodic/periodic_domain.h"
 #include "stream/periodic/torus_proof.h"
 
 namespace spillway::stream {
@@ -42,7 +42,6 @@ class ChosenSimplices {
 
   [[nodiscard]] bool is_deep(const Point<D>& point) const;
   void note_reach(const std::array<Point<D>, D + 1>& corners);
-  [[nodiscard]] bool reaches_beyond(const SimplexPlace<D>& place) const;
   void add_facet(const std::array<VertexId, D>& facet, bool odd);
 
   const PeriodicDomain& domain_;

@@ -6,8 +6,8 @@
 #include <spillway/detail/probing_table.h>
 #include <spillway/live_vertices.h>
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/periodic_domain.h"
 #include "src/runtime/memory_budget.h"
-#include "stream/periodic/periodic_domain.h"
 
 namespace spillway::stream {
 
@@ -71,9 +71,9 @@ class PeriodicBlocks final : public BlockSink {
   std::uint64_t engine_vertices_ = 0;
   std::uint64_t vertices_ = 0;
   detail::ProbingTable<SharedPoint> shared_;
-  LiveVertices<Copy> copies_;           ///< by the engine's numbers
-  std::vector<std::uint64_t> dropped_;  ///< the engine's numbers of copies that are no new vertex
-  std::vector<Corner> map_;             ///< of the block that is written, by short number
+  LiveVertices<Copy> copies_;            ///< by the engine's numbers
+  std::vector<std::uint64_t> dropped_;   ///< the engine's numbers of copies that are no new vertex
+  std::vector<Corner> map_;              ///< of the block that is written, by short number
   LiveVertices<std::uint32_t> imports_;  ///< likewise: short numbers of imported vertices
 };
 
