@@ -55,7 +55,7 @@ void bind_mesh(py::module_& module, const char* name) {
   };
   py::class_<Mesh>(module, name)
       .def(py::init(&triangulate<D, Index>), py::arg("points").noconvert(), py::arg("threads"),
-           py::arg("progress"), py::arg("periodic"))
+           py::arg("progress"), py::arg("periodic") = py::none())
       .def_property_readonly("points",
                              [=](const py::object& self) {
                                const auto points = mesh_of(self).points();

@@ -16,7 +16,7 @@ class _Mesh:
         points: Floats,
         threads: int,
         progress: Callable[[float], object] | None,
-        periodic: Box | None,
+        periodic: Box | None = ...,
     ) -> None: ...
     @property
     def points(self) -> Floats: ...
