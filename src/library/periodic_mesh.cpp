@@ -53,8 +53,13 @@ class PeriodicConstruction {
       if (made.proven) return finish(std::move(made));
       if (!domain.widest()) {
         margin *= kWiden;
+      } else if (extra_.empty() && !made.missing.empty()) {
+        // Cells between open sides may be longer than half a period, and reach as far on the other
+        // side. With their corners these copies of them are Delaunay cells of the copies, too.
+        extra_ = std::move(made.missing);
+        extra_of_ = std::move(made.missing_of);
       } else if (most < 1) {
-        most = 1;  // cells between open sides may be longer than half a period
+        most = 1;  // then all copies of all cells that meet the box are there
       } else {
         throw std::logic_error("a periodic mesh is not closed: a fault of the program");
       }
@@ -105,6 +110,9 @@ class PeriodicConstruction {
       require_point_numbers<Index>(count + outside.size(), "points with their copies");
       point_of_.resize(count + outside.size(), static_cast<Index>(i));
     }
+    outside.insert(outside.end(), extra_.begin(), extra_.end());
+    point_of_.insert(point_of_.end(), extra_of_.begin(), extra_of_.end());
+    require_point_numbers<Index>(count + outside.size(), "points with their copies");
     copies_.points = SlabArray<Point<D>>(count + outside.size());
     std::copy(mesh_.points.begin(), mesh_.points.end(), copies_.points.begin());
     std::copy(outside.begin(), outside.end(), copies_.points.begin() + count);
@@ -142,6 +150,8 @@ class PeriodicConstruction {
   std::size_t told_ = 0;
   MeshData<D, Index> copies_;
   std::vector<Index> point_of_;
+  std::vector<Point<D>> extra_;  ///< copies beyond the margin
+  std::vector<Index> extra_of_;
 };
 
 }  // namespace

@@ -199,11 +199,46 @@ class Chooser {
     for (std::size_t first = 0, next = 0; first < entries.size(); first = next) {
       while (next < entries.size() && entries[next].key == entries[first].key) ++next;
       if (entries[first].others < 0) continue;  // only the box around it meets the torus'
-      if (next - first != static_cast<std::size_t>(entries[first].others) + 1) return false;
+      if (next - first != static_cast<std::size_t>(entries[first].others) + 1) {
+        if (!domain_.widest()) return false;
+        list_missing(entries[first].cell);
+        continue;
+      }
       for (std::size_t e = first + 1; e < next; ++e) {
         if (entries[e].others >= 0) return false;
         result_.number[entries[e].cell] = result_.number[entries[first].cell];
       }
+    }
+    return result_.missing.empty();
+  }
+
+  /// The corners of all copies of a chosen cell that meet the box. That is exact: none lies farther
+  /// from the box than a period.
+  void list_missing(Index cell) {
+    const Corners corners = mesh_.corners(cell);
+    int copies = 1;
+    for (int k = 0; k < D; ++k) copies *= 3;
+    for (int n = 0; n < copies; ++n) {
+      Periods<D> periods{};
+      for (int k = 0, rest = n; k < D; ++k, rest /= 3) {
+        periods[k] = static_cast<std::int8_t>(rest % 3 - 1);
+      }
+      Corners moved;
+      for (int i = 0; i <= D; ++i) moved[i] = torus_.moved<D>(corners[i], periods);
+      if (periods == Periods<D>{} || !meets_box(Reach<D>(moved), periods)) continue;
+      for (int i = 0; i <= D; ++i) {
+        result_.missing.push_back(moved[i]);
+        result_.missing_of.push_back(point_of_[mesh_.vertex(cell, i)]);
+      }
+    }
+  }
+
+  /// Along open axes nothing is moved.
+  [[nodiscard]] bool meets_box(const Reach<D>& reach, const Periods<D>& periods) const {
+    for (int k = 0; k < D; ++k) {
+      if (!torus_.periodic(k) && periods[k] != 0) return false;
+      if (!torus_.periodic(k)) continue;
+      if (reach.high[k] < torus_.low(k) || reach.low[k] >= torus_.high(k)) return false;
     }
     return true;
   }

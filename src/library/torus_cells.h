@@ -30,6 +30,11 @@ struct TorusCells {
   bool proven = false;
   std::array<double, 3> reach{};  ///< the longest that a cell is along each periodic axis
 
+  /// Copies of points without which some copies of cells that meet the box are not there. None if
+  /// the margin is too narrow for anything else.
+  std::vector<Point<D>> missing;
+  std::vector<Index> missing_of;  ///< which points they are copies of
+
   CellArrays<Index> cells;
   SlabArray<std::int8_t> offsets;
   std::vector<Index> kept;    ///< by cell: the cell of the copies whose centre lies in the box
