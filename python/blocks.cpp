@@ -10,6 +10,7 @@
 #include "python/attributes.h"
 #include "python/bindings.h"
 #include "python/block_stream.h"
+#include "python/periodic.h"
 #include "python/statistics.h"
 
 namespace spillway::python {
@@ -42,8 +43,19 @@ py::array rows_of_vertices(MeshBlock& block, const MeshHeader& header, py::dict&
   return py::module_::import("numpy").attr("column_stack")(columns);
 }
 
-/// A block as (first_vertex, vertices, simplices, finalized, input_index, attributes), or None at
-/// the end.
+/// Of a periodic mesh, for each corner which copy of the vertex it is.
+py::object offsets_of(std::vector<std::int8_t> offsets, const MeshHeader& header) {
+  if (!header.periodic) return py::none();
+  auto kept = std::make_unique<std::vector<std::int8_t>>(std::move(offsets));
+  const auto dimension = static_cast<py::ssize_t>(header.dimension);
+  const auto simplices = static_cast<py::ssize_t>(kept->size()) / (dimension * (dimension + 1));
+  const std::int8_t* const first = kept->data();
+  return py::array_t<std::int8_t>({simplices, dimension + 1, dimension}, first,
+                                  keep(std::move(kept)));
+}
+
+/// A block as (first_vertex, vertices, simplices, finalized, input_index, attributes, offsets), or
+/// None at the end.
 py::object next_block(BlockStream& stream) {
   std::optional<MeshBlock> block = stream.next();
   if (!block) return py::none();
@@ -52,9 +64,10 @@ py::object next_block(BlockStream& stream) {
   if (header.has_input_index) index = row_of_numbers(std::move(block->input_index));
   py::dict attributes = arrays_of(std::move(block->attributes));
   const py::array vertices = rows_of_vertices(*block, header, attributes);
+  const py::object offsets = offsets_of(std::move(block->offsets), header);
   return py::make_tuple(block->first_vertex, vertices,
                         rows_of_numbers(std::move(block->corners), header.dimension + 1),
-                        row_of_numbers(std::move(block->finalized)), index, attributes);
+                        row_of_numbers(std::move(block->finalized)), index, attributes, offsets);
 }
 
 }  // namespace
@@ -65,6 +78,8 @@ void bind_blocks(py::module_& module) {
            py::arg("run"), py::arg("origin"), py::arg("attributes"))
       .def("next", next_block)
       .def("close", &BlockStream::close)
+      .def_property_readonly(
+          "periodic", [](const BlockStream& stream) { return box_tuple(stream.header().periodic); })
       .def_property_readonly("report", [](const BlockStream& stream) -> py::object {
         if (!stream.report()) return py::none();
         return statistics_of(*stream.report(), stream.run());

@@ -9,6 +9,7 @@
 
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/periodic.h"
 #include "python/vertex_neighbours.h"
 #include "python/watched_run.h"
 
@@ -17,7 +18,8 @@ namespace {
 
 template <int D, class Index>
 Delaunay<D, Index> triangulate(const Coordinates& points, unsigned threads,
-                               const py::object& progress) {
+                               const py::object& progress,
+                               const std::optional<BoxTuple>& periodic) {
   const PointView<D> view = point_view<D>(points);
   std::optional<Delaunay<D, Index>> mesh;
   Watch watch;
@@ -25,6 +27,7 @@ Delaunay<D, Index> triangulate(const Coordinates& points, unsigned threads,
   DelaunayOptions options;
   options.threads = threads;
   options.stop = watch.stop_token();
+  options.periodic = periodic_box(periodic);
   if (!progress.is_none()) {
     options.progress = [&](std::size_t done, std::size_t total) {
       watch.tell(static_cast<double>(done) / static_cast<double>(total));
@@ -52,7 +55,7 @@ void bind_mesh(py::module_& module, const char* name) {
   };
   py::class_<Mesh>(module, name)
       .def(py::init(&triangulate<D, Index>), py::arg("points").noconvert(), py::arg("threads"),
-           py::arg("progress"))
+           py::arg("progress"), py::arg("periodic") = py::none())
       .def_property_readonly("points",
                              [=](const py::object& self) {
                                const auto points = mesh_of(self).points();
@@ -68,6 +71,13 @@ void bind_mesh(py::module_& module, const char* name) {
                                const auto all = mesh_of(self).cell_neighbours();
                                return rows_of(all.data(), all.size() / (D + 1), D + 1, self);
                              })
+      .def_property_readonly("cell_offsets",
+                             [=](const py::object& self) {
+                               const auto all = mesh_of(self).cell_offsets();
+                               return rows_of(all.data(), all.size() / D, D, self);
+                             })
+      .def_property_readonly("periodic",
+                             [](const Mesh& mesh) { return box_tuple(mesh.periodic()); })
       .def_property_readonly("hull_facets",
                              [=](const py::object& self) {
                                const auto all = mesh_of(self).hull_facets();

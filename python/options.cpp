@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "python/bindings.h"
+#include "python/periodic.h"
 
 namespace spillway::python {
 namespace {
@@ -181,7 +182,12 @@ void bind_triangulate_options(py::module_& module) {
       .def_readwrite("children", &TriangulateOptions::children)
       .def_readwrite("trust_headers", &TriangulateOptions::trust_headers)
       .def_readwrite("resume_folder", &TriangulateOptions::resume_folder)
-      .def_readwrite("checkpoint_seconds", &TriangulateOptions::checkpoint_seconds);
+      .def_readwrite("checkpoint_seconds", &TriangulateOptions::checkpoint_seconds)
+      .def_property(
+          "periodic", [](const TriangulateOptions& options) { return box_tuple(options.periodic); },
+          [](TriangulateOptions& options, const std::optional<BoxTuple>& box) {
+            options.periodic = periodic_box(box);
+          });
   bind_choice(bound, "heights", &TriangulateOptions::heights,
               {"first", "lowest", "highest", "mean"});
   bind_choice(bound, "division", &TriangulateOptions::division,

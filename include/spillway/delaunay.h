@@ -18,7 +18,7 @@
 
 namespace spillway {
 
-/// How the work is done. Nothing of it changes the result.
+/// How the work is done. Nothing of it but `periodic` changes the result.
 struct DelaunayOptions {
   /// The most threads, the caller's among them, for the triangulation and later for queries
   /// of many places at once. 0: as many as the process may use.
@@ -30,7 +30,7 @@ struct DelaunayOptions {
   /// A request to stop ends the run with ErrorCode::kInterrupted, soon but not at once: parts (of
   /// some hundred thousand points) and merges of them that have been begun are finished.
   std::stop_token stop{};
-  /// D = 2 and D = 3: the points repeat with this box (see Delaunay). It does change the result.
+  /// D = 2 and D = 3: points repeat with this box (see Delaunay).
   std::optional<PeriodicBox> periodic{};
 };
 
@@ -57,6 +57,12 @@ struct Duplicate {
 /// vertex, the others are `duplicates()`. Cells are numbered from 0, always in the same way for the
 /// same input.
 ///
+/// With DelaunayOptions::periodic it is the triangulation of the flat torus that the box is: points
+/// are brought into the box, and of all copies of a cell one stands for all. There is no hull unless
+/// an axis is open, and then none along the others. A cell's corners are copies of its vertices,
+/// which cell_offsets() tell. Places that are asked for are brought into the box, too, and rounded
+/// as points are. The copies of points near the sides that this takes are kept for such questions.
+///
 /// Objects can be moved, not copied. All members that are const may be called by many threads at
 /// once. Spans are valid for as long as the object is, also when it has been moved to another
 /// place. One that has been moved from may only be assigned to or destroyed.
@@ -65,11 +71,13 @@ class Delaunay {
  public:
   /// Triangulates the points, of which a copy is kept. Throws Error:
   ///   kInvalidArgument  a coordinate is infinite or not a number (the text has the point's
-  ///                     number), or there are more than 4,096 threads
+  ///                     number), there are more than 4,096 threads, or the periodic box is not one
+  ///                     of 2 or 3 dimensions, is empty, or is too small for its distance from 0
   ///   kDegenerateInput  there are no points, or all lie on one line (D = 3: one plane; in general
-  ///                     one hyperplane), as fewer than D+1 do
+  ///                     one hyperplane), as fewer than D+1 do; where all axes are periodic, a cell
+  ///                     is half a period long or longer
   ///   kTooLarge         more points or cells than an Index can number, or more than 4,294,967,293
-  ///                     points
+  ///                     points, copies of periodic ones included
   ///   kInterrupted      options.stop asked for it
   explicit Delaunay(PointView<D> points, const DelaunayOptions& options = {});
   Delaunay(Delaunay&&) noexcept;
@@ -83,7 +91,8 @@ class Delaunay {
   /// Number of triangles, tetrahedra or simplices; at least 1.
   [[nodiscard]] std::size_t cell_count() const;
 
-  /// The points in the order of the input. Shape: point_count().
+  /// The points in the order of the input, of a periodic mesh as they are in the box. Shape:
+  /// point_count().
   [[nodiscard]] std::span<const Point<D>> points() const;
 
   /// The cells' vertices: those of cell c are the D+1 from c * (D+1) on, positively oriented: a
@@ -91,6 +100,15 @@ class Delaunay {
   /// general the determinant of the edges from the first vertex to the others is positive.
   /// Shape: cell_count() * (D+1).
   [[nodiscard]] std::span<const Index> cell_vertices() const;
+
+  /// Of a periodic mesh, for each of cell_vertices() the copy of the vertex that it is: so many
+  /// periods along each axis beyond the vertex, -1, 0 or 1. Of the vertices of a cell, the first in
+  /// the order of coordinates (x, then y, then z) has 0. A cell is positively oriented where its
+  /// corners are. Shape: cell_count() * (D+1) * D; empty for other meshes.
+  [[nodiscard]] std::span<const std::int8_t> cell_offsets() const;
+
+  /// The box of a periodic mesh, its sides rounded as PeriodicBox says; those of open axes are 0.
+  [[nodiscard]] std::optional<PeriodicBox> periodic() const;
 
   /// The cells' neighbours: the i-th one of cell c shares all its vertices with c but the i-th; -1
   /// where c's facet lies on the hull. Shape: cell_count() * (D+1).
@@ -115,9 +133,9 @@ class Delaunay {
   /// Shape: point_count().
   [[nodiscard]] std::span<const Index> vertex_cells() const;
 
-  /// The centre of the cell's circumsphere, within 2^-40 of its radius and half a unit in the last
-  /// place; infinite where it is beyond the largest double. Throws Error(kInvalidArgument) for a
-  /// number that no cell has.
+  /// The centre of the cell's circumsphere, of a periodic mesh the one in the box; within 2^-40 of
+  /// its radius and half a unit in the last place; infinite where it is beyond the largest double.
+  /// Throws Error(kInvalidArgument) for a number that no cell has.
   [[nodiscard]] Point<D> circumcentre(Index cell) const;
 
   /// Those of all cells, computed by several threads. Shape: cell_count().

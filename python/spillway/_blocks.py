@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from . import _spillway
 from ._arrays import Floats
 from ._inputs import mesh_origin
-from ._options import TriangulateOptions, as_names, make_run, takes
+from ._options import RepeatingOptions, as_names, make_run, takes
+from ._periodic import corners_of_box
 from ._reports import RunReport
 
 if TYPE_CHECKING:
@@ -41,6 +42,10 @@ class Block(NamedTuple):
     """The index of each of `vertices` in the input, shape (n,); None unless that was asked for."""
     attributes: dict[str, NDArray[Any]]
     """What `vertices` carry, of what was asked for, as it is stored: shape (n,) or (n, elements)."""
+    offsets: NDArray[np.int8] | None = None
+    """Of a periodic mesh, for each corner in `simplices` the copy of the vertex that it is: so many
+    periods along each axis beyond the vertex, -1, 0 or 1; the first corner of a simplex in the order
+    of coordinates has 0. Shape (m, dim + 1, dim). None for other meshes."""
 
     def __repr__(self) -> str:
         return (
@@ -59,10 +64,14 @@ class Blocks(Iterator[Block]):
     ----------
     report : RunReport or None
         What the run was like, once all blocks have been taken.
+    periodic : tuple or None
+        The box of a periodic mesh as ``(low, high)``, with None for the sides of open axes, once a
+        block has been taken.
     """
 
     def __init__(self, stream: _spillway.BlockStream) -> None:
         self.report: RunReport | None = None
+        self.periodic: Any = None
         self._stream = stream
         # Also where the interpreter ends before the run does.
         self._end = weakref.finalize(self, stream.close)
@@ -76,7 +85,10 @@ class Blocks(Iterator[Block]):
             if self._stream.report is not None:
                 self.report = RunReport(**self._stream.report)
             raise StopIteration
-        return Block(*block)
+        made = Block(*block)
+        if made.offsets is not None and self.periodic is None:
+            self.periodic = corners_of_box(self._stream.periodic, made.offsets.shape[2])
+        return made
 
     def close(self) -> None:
         """End the run, if it has not ended, and wait until it has left nothing behind."""
@@ -94,7 +106,7 @@ class Blocks(Iterator[Block]):
         self.close()
 
 
-@takes(TriangulateOptions)
+@takes(RepeatingOptions)
 def blocks(
     inputs: Any,
     *,
@@ -102,7 +114,7 @@ def blocks(
     id: bool = False,
     attributes: str | Sequence[str] | None = None,
     mesh_format: str | None = None,
-    **options: Unpack[TriangulateOptions],
+    **options: Unpack[RepeatingOptions],
 ) -> Blocks:
     """Go through a mesh that may be larger than memory, block by block.
 
@@ -127,7 +139,7 @@ def blocks(
     -------
     Blocks
         An iterator over `Block`: ``(first_vertex, vertices, simplices, finalized, input_index,
-        attributes)``.
+        attributes, offsets)``.
 
     Raises
     ------

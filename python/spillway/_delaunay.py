@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _spillway
 from ._affine import barycentric_transform, lifted_planes
 from ._arrays import Floats, Integers, as_floats, as_places, as_points, as_thread_count, frozen
+from ._periodic import Box, as_periodic_box, corners_of_box
 from .errors import InvalidArgumentError, TooLargeError
 
 _MOST_NARROW = 2**31 - 1
@@ -45,11 +46,17 @@ class Delaunay:
     progress : callable, optional
         Told from time to time the fraction that is done, from 0 to 1, the last time with 1. It is
         called in the thread of the caller. What it raises ends the run.
+    periodic : box, float or sequence of float, optional
+        In the plane and in space: the box that points repeat with, as
+        ``((xmin, ymin), (xmax, ymax))`` or of three coordinates each, with None for both sides of an
+        open axis; or its periods from 0, as the `boxsize` of `scipy.spatial.cKDTree`: one for all
+        axes, or one for each, 0 for an open one. Points are brought into the box, and the
+        triangulation has no boundary along its periodic axes.
 
     Attributes
     ----------
     points : ndarray of float64, shape (npoints, ndim)
-        The coordinates in the order of the input.
+        The coordinates in the order of the input, of a periodic triangulation in the box.
     z : ndarray of float64, shape (npoints,), or None
         The heights that points in the plane carry.
     simplices : ndarray of int32, shape (nsimplex, ndim + 1)
@@ -59,6 +66,14 @@ class Delaunay:
         int64 where there may be more than 2,147,483,647 of them.
     neighbors : ndarray of int32, shape (nsimplex, ndim + 1)
         The k-th neighbor lies opposite the k-th vertex; -1 outside of the hull.
+    offsets : ndarray of int8, shape (nsimplex, ndim + 1, ndim), or None
+        Of a periodic triangulation, for each vertex in `simplices` the copy of it that the simplex
+        has: so many periods along each axis beyond the point, -1, 0 or 1. The corners are
+        ``points[simplices] + offsets * periods``. The first of them in the order of coordinates has
+        0. None for others.
+    periodic : tuple or None
+        The box of a periodic triangulation as ``(low, high)``, with None for the sides of open axes.
+        Its sides are rounded so that copies of points are exact.
     convex_hull : ndarray of int32, shape (nfacets, ndim)
         The vertices of each facet of the hull.
     coplanar : ndarray of int32, shape (nduplicates, 3)
@@ -74,7 +89,8 @@ class Delaunay:
     spillway.Error
         Also a ValueError, with the attribute `code`: ``"invalid argument"`` for coordinates that
         are not finite or arguments that cannot be used, ``"degenerate input"`` for points that span
-        no triangle (tetrahedron, simplex): none, too few, or all on one line (plane, hyperplane).
+        no triangle (tetrahedron, simplex): none, too few, or all on one line (plane, hyperplane);
+        or so few in a periodic box that a simplex is half a period long.
     MemoryError
         If memory runs out.
     KeyboardInterrupt
@@ -95,12 +111,15 @@ class Delaunay:
         dim: int | None = None,
         threads: int | None = None,
         progress: Callable[[float], object] | None = None,
+        periodic: Any = None,
     ) -> None:
         if progress is not None and not callable(progress):
             raise TypeError(f"progress is {progress!r}; give a function that takes a fraction")
         coordinates, self.z = as_points(points, dim)
         self._threads = threads
-        self._mesh = _make_mesh(coordinates, as_thread_count(threads), progress)
+        ndim = coordinates.shape[1]
+        self._given = None if periodic is None else as_periodic_box(periodic, ndim)
+        self._mesh = _make_mesh(coordinates, as_thread_count(threads), progress, self._given)
         self.points: Floats = self._mesh.points
         self.simplices: Integers = self._mesh.cell_vertices
         self.neighbors: Integers = self._mesh.cell_neighbours
@@ -108,6 +127,11 @@ class Delaunay:
         self.vertex_to_simplex: Integers = self._mesh.vertex_cells
         self.npoints, self.ndim = self.points.shape
         self.nsimplex = len(self.simplices)
+        self.offsets: NDArray[np.int8] | None = None
+        self.periodic = corners_of_box(self._mesh.periodic, self.ndim)
+        if periodic is not None:
+            shape = (self.nsimplex, self.ndim + 1, self.ndim)
+            self.offsets = self._mesh.cell_offsets.reshape(shape)
 
     def __repr__(self) -> str:
         cells = {2: "triangles", 3: "tetrahedra"}.get(self.ndim, "simplices")
@@ -143,14 +167,15 @@ class Delaunay:
 
         With ``T = transform[i]``, ``c = T[:ndim] @ (x - T[ndim])`` are the coordinates of a place x
         in simplex i, but the last, which is ``1 - c.sum()``. Not a number where a simplex is so
-        thin that they would be all rounding error.
+        thin that they would be all rounding error. Of a periodic triangulation x must be the copy of
+        the place that lies at the corners as `offsets` say.
         """
-        return frozen(barycentric_transform(self.points[self.simplices]))
+        return frozen(barycentric_transform(self._corners()))
 
     @functools.cached_property
     def circumcenters(self) -> Floats:
         """The centres of the simplices' circumspheres, shape (nsimplex, ndim); infinite where they
-        lie beyond the largest float64."""
+        lie beyond the largest float64. Of a periodic triangulation they are in the box."""
         return frozen(self._mesh.circumcentres())
 
     @functools.cached_property
@@ -264,8 +289,10 @@ class Delaunay:
         ImportError
             Without the package meshio.
         InvalidArgumentError
-            For more than three dimensions, which no mesh format has.
+            For more than three dimensions, which no mesh format has, and for periodic triangulations.
         """
+        if self.periodic is not None:
+            raise InvalidArgumentError("meshio has no periodic meshes; make one of copies of points")
         if self.ndim > 3:
             raise InvalidArgumentError(
                 f"the mesh has {self.ndim} dimensions; meshio has cells of two and three"
@@ -273,6 +300,15 @@ class Delaunay:
         meshio = importlib.import_module("meshio")
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
         return meshio.Mesh(points, [("triangle" if self.ndim == 2 else "tetra", self.simplices)])
+
+    def _corners(self) -> Floats:
+        """The corners of the simplices, shape (nsimplex, ndim + 1, ndim)."""
+        corners: Floats = self.points[self.simplices]
+        if self.offsets is None:
+            return corners
+        low, high, flags = self._mesh.periodic
+        periods = np.where(flags, np.subtract(high, low), 0.0)[: self.ndim]
+        return corners + self.offsets * periods
 
     def _ask(self, question: Callable[[Floats], NDArray[Any]], xi: Any, kind: Any) -> Any:
         places = as_places(xi, self.ndim)
@@ -291,7 +327,10 @@ class Delaunay:
 
     def __reduce__(self) -> tuple[Any, ...]:
         points = self.points if self.z is None else np.column_stack([self.points, self.z])
-        make = functools.partial(type(self), dim=self.ndim, threads=self._threads)
+        box = corners_of_box(self._given, self.ndim)
+        make = functools.partial(
+            type(self), dim=self.ndim, threads=self._threads, periodic=box
+        )
         return make, (points,)
 
     # From here on: what SciPy asks of its own triangulations.
@@ -303,7 +342,9 @@ class Delaunay:
     @property  # type: ignore[misc]
     def __class__(self) -> type:
         # Users of triangulations in SciPy ask isinstance() for its class, and read arrays of the
-        # same names. Whoever asks has imported it, so this need not.
+        # same names. Whoever asks has imported it, so this need not. They know of no copies.
+        if getattr(self, "periodic", None) is not None:
+            return type(self)
         scipy_module = sys.modules.get("scipy.spatial._qhull")
         theirs: type | None = getattr(scipy_module, "Delaunay", None)
         return type(self) if theirs is None else theirs
@@ -316,6 +357,8 @@ class Delaunay:
     def equations(self) -> Floats:
         """The hyperplanes of the simplices on the paraboloid z = |x|^2, as downward unit normals and
         offsets, shape (nsimplex, ndim + 2)."""
+        if self.periodic is not None:
+            raise InvalidArgumentError("a periodic triangulation is no hull of points that are lifted")
         return frozen(lifted_planes(self.points[self.simplices], self.circumcenters))
 
     @functools.cached_property
@@ -340,12 +383,12 @@ class Delaunay:
         return distances
 
 
-def _make_mesh(points: Floats, threads: int, progress: Any) -> Any:
+def _make_mesh(points: Floats, threads: int, progress: Any, periodic: Box | None) -> Any:
     count, ndim = points.shape
     narrow, wide = getattr(_spillway, f"Mesh{ndim}"), getattr(_spillway, f"WideMesh{ndim}")
     if count * _SIMPLICES_A_POINT[ndim] > _MOST_NARROW:
-        return wide(points, threads, progress)
+        return wide(points, threads, progress, periodic)
     try:
-        return narrow(points, threads, progress)
+        return narrow(points, threads, progress, periodic)
     except TooLargeError:  # points in space may have far more simplices than is usual
-        return wide(points, threads, progress)
+        return wide(points, threads, progress, periodic)

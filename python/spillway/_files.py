@@ -24,8 +24,8 @@ from ._options import (
     ConvertOptions,
     InfoOptions,
     PathLike,
+    RepeatingOptions,
     RunOptions,
-    TriangulateOptions,
     as_names,
     as_path,
     as_reals,
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
-@takes(TriangulateOptions)
+@takes(RepeatingOptions)
 def triangulate(
     inputs: Any,
     output: PathLike,
@@ -60,7 +60,7 @@ def triangulate(
     output_format: str | None = None,
     tiles: float | PathLike | None = None,
     clip_simplices: bool = False,
-    **options: Unpack[TriangulateOptions],
+    **options: Unpack[RepeatingOptions],
 ) -> RunReport:
     """Triangulate points of any number, through bounded memory, to a file.
 

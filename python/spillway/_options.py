@@ -21,6 +21,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence, TypedDict, TypeVa
 from . import _spillway
 from ._arrays import as_thread_count
 from ._messages import is_explained
+from ._periodic import as_periodic_box
 from .errors import Error, InvalidArgumentError
 
 PATHS = (str, bytes, os.PathLike)
@@ -124,6 +125,12 @@ class TriangulateOptions(
     DivisionOptions, FilterOptions, PlaceOptions, JoinOptions, RunOptions, total=False
 ):
     """Of points that are triangulated."""
+
+
+class RepeatingOptions(TriangulateOptions, total=False):
+    """Of points that are triangulated to a mesh, which may be periodic."""
+
+    periodic: Any
 
 
 @dataclasses.dataclass(frozen=True)
@@ -477,6 +484,16 @@ _OPTIONS = {
         'What triangulates leaves: ``"spillway"`` or ``"cgal"``. Both give the same mesh.',
         "division",
         attribute("kernel"),
+    ),
+    "periodic": _Option(
+        "box, float or sequence of float, optional",
+        "The box that points repeat with, as ``((xmin, ymin), (xmax, ymax))`` or of three "
+        "coordinates each, with None for both sides of an open axis; or its periods from 0, one for "
+        "all axes or one for each. Points are brought into it, and the mesh has no boundary there.",
+        "division",
+        lambda target, value: setattr(
+            target, "periodic", as_periodic_box(value, target.dimension)
+        ),
     ),
     "resume": _Option(
         "path, optional",

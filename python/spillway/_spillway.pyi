@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Floats, Integers
+from ._periodic import Box
 
 version: str
 
@@ -15,6 +16,7 @@ class _Mesh:
         points: Floats,
         threads: int,
         progress: Callable[[float], object] | None,
+        periodic: Box | None = ...,
     ) -> None: ...
     @property
     def points(self) -> Floats: ...
@@ -22,6 +24,10 @@ class _Mesh:
     def cell_vertices(self) -> Integers: ...
     @property
     def cell_neighbours(self) -> Integers: ...
+    @property
+    def cell_offsets(self) -> NDArray[np.int8]: ...
+    @property
+    def periodic(self) -> Box | None: ...
     @property
     def hull_facets(self) -> Integers: ...
     @property
@@ -129,6 +135,7 @@ class TriangulateOptions:
     resume_folder: bytes | str
     checkpoint_seconds: float
     kernel: str
+    periodic: Box | None
 
 class DemOptions:
     products: list[str]
@@ -290,9 +297,12 @@ class BlockStream:
             NDArray[np.int64],
             NDArray[np.int64] | None,
             dict[str, NDArray[Any]],
+            NDArray[np.int8] | None,
         ]
         | None
     ): ...
     def close(self) -> None: ...
+    @property
+    def periodic(self) -> Box | None: ...
     @property
     def report(self) -> _Figures | None: ...

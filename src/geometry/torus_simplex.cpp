@@ -1,8 +1,11 @@
 #include "src/geometry/torus_simplex.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "src/error.h"
 #include "src/geometry/constructions/circumcentre.h"
 #include "src/geometry/determinants.h"
 #include "src/geometry/predicates.h"
@@ -51,28 +54,6 @@ Periods<D> periods_of_centre(const Torus& torus, const Point<D>& lowest, const P
     periods[k] = static_cast<std::int8_t>(periods[k] + std::clamp(beyond, -100.0, 100.0));
   }
   return periods;
-}
-
-/// Whether the facet's plane is along all periodic axes.
-template <int D>
-bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) {
-  std::array<int, D> open{};
-  int count = 0;
-  for (int k = 0; k < D; ++k) {
-    if (!torus.periodic(k)) open[count++] = k;
-  }
-  if (count == 1) {
-    return std::all_of(facet.begin(), facet.end(),
-                       [&](const Point<D>& point) { return point[open[0]] == facet[0][open[0]]; });
-  }
-  if constexpr (D == 3) {
-    if (count == 2) {
-      std::array<Point<2>, 3> seen;
-      for (int i = 0; i < 3; ++i) seen[i] = {facet[i][open[0]], facet[i][open[1]]};
-      return orientation<2>(seen) == 0;
-    }
-  }
-  return false;
 }
 
 /// The centre of a simplex of which the determinant of its edges is well away from 0, seen from the
@@ -156,6 +137,27 @@ SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D +
 }
 
 template <int D>
+bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) {
+  std::array<int, D> open{};
+  int count = 0;
+  for (int k = 0; k < D; ++k) {
+    if (!torus.periodic(k)) open[count++] = k;
+  }
+  if (count == 1) {
+    return std::all_of(facet.begin(), facet.end(),
+                       [&](const Point<D>& point) { return point[open[0]] == facet[0][open[0]]; });
+  }
+  if constexpr (D == 3) {
+    if (count == 2) {
+      std::array<Point<2>, 3> seen;
+      for (int i = 0; i < 3; ++i) seen[i] = {facet[i][open[0]], facet[i][open[1]]};
+      return orientation<2>(seen) == 0;
+    }
+  }
+  return false;
+}
+
+template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet) {
   if (!is_along_periods<D>(torus, facet)) return false;
   const Point<D>& lowest = *std::min_element(facet.begin(), facet.end());
@@ -164,8 +166,25 @@ bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& fac
   return periods_of_centre<D>(torus, lowest, middle_of<D>(differences)) == Periods<D>{};
 }
 
+void refuse_long_simplices(const Torus& torus, const std::array<double, 3>& reach) {
+  int axis = 0;
+  const auto share = [&](int k) { return reach[k] / torus.period(k); };
+  for (int k = 1; k < torus.dimension(); ++k) {
+    if (share(k) > share(axis)) axis = k;
+  }
+  if (share(axis) < 0.5) return;
+  throw Failure(
+      fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of the "
+                  "period long along {}, and all must be shorter than half of it; add points where "
+                  "there are few, or repeat points and box two or three times along {}",
+                  torus.dimension() == 2 ? "triangle" : "tetrahedron", share(axis), "xyz"[axis],
+                  "xyz"[axis]),
+      ErrorCode::kDegenerateInput);
+}
+
 #define SPILLWAY_INSTANTIATE(D)                                                                \
   template SimplexPlace<D> place_simplex<D>(const Torus&, const std::array<Point<D>, D + 1>&); \
+  template bool is_along_periods<D>(const Torus&, const std::array<Point<D>, D>&);             \
   template bool is_chosen_hull_facet<D>(const Torus&, const std::array<Point<D>, D>&);
 SPILLWAY_INSTANTIATE(2)
 SPILLWAY_INSTANTIATE(3)

@@ -1,12 +1,25 @@
 #pragma once
 // Simplices of a periodic triangulation: which of all copies of one stands for it.
 
+#include <algorithm>
 #include <array>
 
 #include "src/geometry/point.h"
 #include "src/geometry/torus.h"
 
 namespace spillway::geometry {
+
+/// The corners of a simplex in the order of their coordinates (x, then y, then z), which is the same
+/// for all copies of it.
+template <int D>
+struct SortedCorners {
+  std::array<int, D + 1> order;  ///< places of the corners, sorted
+
+  explicit SortedCorners(const std::array<Point<D>, D + 1>& corners) {
+    for (int i = 0; i <= D; ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return corners[a] < corners[b]; });
+  }
+};
 
 /// Where a copy of a simplex lies. Of all copies of one, exactly one has its centre in the box.
 template <int D>
@@ -22,11 +35,21 @@ struct SimplexPlace {
 template <int D>
 SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners);
 
+/// Whether the line or plane of a facet is along all periodic axes: of the hull of some copies, only
+/// such facets are those of the hull of all copies.
+template <int D>
+bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet);
+
 /// Whether a facet of the hull of some copies is one of the hull of all copies, as its plane is
 /// along all periodic axes, and stands for all copies of it: the middle of the box around it lies in
 /// the torus' box.
 template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet);
+
+/// Throws Failure(kDegenerateInput) if the simplices of a closed torus, which are up to so long along
+/// each axis, may be half a period long: those of a triangulation are told apart by their vertices
+/// if none is (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
+void refuse_long_simplices(const Torus& torus, const std::array<double, 3>& reach);
 
 /// How long the box around the corners is along an axis.
 template <int D>

@@ -26,6 +26,8 @@ constexpr std::size_t kGrain = std::size_t{1} << 14;
 
 template <class Index>
 constexpr std::size_t kMostNumbers = static_cast<std::size_t>(std::numeric_limits<Index>::max());
+template <class Index>
+constexpr std::size_t kMostPoints = std::min(kMostNumbers<Index>, kMaxVertices);
 
 /// A copy of the points; throws unless all are finite. Made by all threads.
 template <int D>
@@ -114,6 +116,11 @@ std::vector<Duplicate<Index>> list_duplicates(const Triangulation<D>& triangulat
 
 }  // namespace
 
+template <class Index>
+void require_point_numbers(std::size_t count, const std::string& things) {
+  require_numbers(count, kMostPoints<Index>, things);
+}
+
 void require_numbers(std::size_t count, std::size_t most, const std::string& things) {
   if (count <= most) return;
   throw PublicError(ErrorCode::kTooLarge,
@@ -121,20 +128,25 @@ void require_numbers(std::size_t count, std::size_t most, const std::string& thi
 }
 
 template <int D, class Index>
-MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& options) {
+MeshData<D, Index> copy_points(const PointView<D>& points, const DelaunayOptions& options) {
   if (options.threads > kMostThreads) {
     throw PublicError(
         ErrorCode::kInvalidArgument,
         fmt::format("{} threads: there may be at most {}", options.threads, kMostThreads));
   }
-  require_numbers(points.size(), std::min(kMostNumbers<Index>, kMaxVertices), "points");
+  require_point_numbers<Index>(points.size(), "points");
   MeshData<D, Index> mesh;
   mesh.threads = options.threads == 0 ? available_threads() : options.threads;
   if (options.stop.stop_requested()) throw Interrupted();
   with_threads(mesh.threads, [&] { mesh.points = copy_finite<D>(points); });
+  return mesh;
+}
+
+template <int D, class Index>
+void make_cells(MeshData<D, Index>& mesh, std::size_t points, const DelaunayOptions& options) {
   const Triangulation<D> triangulation =
       triangulate<D>(span_of(mesh.points), options, mesh.threads);
-  require_span(triangulation.dimension, D, points.size());
+  require_span(triangulation.dimension, D, points);
   with_threads(mesh.threads, [&] {
     const CellNumbers<D> numbers(triangulation);
     require_numbers(numbers.count(), kMostNumbers<Index>, "cells");
@@ -142,13 +154,27 @@ MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& 
     mesh.cells = make_cell_arrays<D, Index>(triangulation, numbers);
     mesh.duplicates = list_duplicates<D, Index>(triangulation);
   });
+}
+
+template <int D, class Index>
+MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& options) {
+  MeshData<D, Index> mesh = copy_points<D, Index>(points, options);
+  make_cells(mesh, points.size(), options);
   return mesh;
 }
 
-#define SPILLWAY_INSTANTIATE(D)                                                                 \
-  template MeshData<D, std::int32_t> make_mesh<D>(const PointView<D>&, const DelaunayOptions&); \
-  template MeshData<D, std::int64_t> make_mesh<D>(const PointView<D>&, const DelaunayOptions&);
+template void require_point_numbers<std::int32_t>(std::size_t, const std::string&);
+template void require_point_numbers<std::int64_t>(std::size_t, const std::string&);
+
+#define SPILLWAY_INSTANTIATE_INDEX(D, Index)                                               \
+  template MeshData<D, Index> copy_points<D>(const PointView<D>&, const DelaunayOptions&); \
+  template void make_cells<D>(MeshData<D, Index>&, std::size_t, const DelaunayOptions&);   \
+  template MeshData<D, Index> make_mesh<D>(const PointView<D>&, const DelaunayOptions&);
+#define SPILLWAY_INSTANTIATE(D)               \
+  SPILLWAY_INSTANTIATE_INDEX(D, std::int32_t) \
+  SPILLWAY_INSTANTIATE_INDEX(D, std::int64_t)
 SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
 #undef SPILLWAY_INSTANTIATE
+#undef SPILLWAY_INSTANTIATE_INDEX
 
 }  // namespace spillway::library

@@ -5,6 +5,7 @@
 #include <spillway/delaunay.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct MeshData {
   unsigned threads = 1;
   SlabArray<Point<D>> points;
   CellArrays<Index> cells;
+  SlabArray<std::int8_t> offsets{};  ///< of a periodic mesh
   std::vector<Duplicate<Index>> duplicates;
 
   [[nodiscard]] MeshView<D, Index> view() const {
@@ -29,9 +31,22 @@ struct MeshData {
   }
 };
 
-/// Throws Error as the constructor of spillway::Delaunay says.
+/// The points alone, and how many threads are to work. Throws Error as the constructor of
+/// spillway::Delaunay says, which make_cells() and make_mesh() do, too.
+template <int D, class Index>
+MeshData<D, Index> copy_points(const PointView<D>& points, const DelaunayOptions& options);
+
+/// Triangulates the points. `points` is the number that messages tell.
+template <int D, class Index>
+void make_cells(MeshData<D, Index>& mesh, std::size_t points, const DelaunayOptions& options);
+
+/// Both.
 template <int D, class Index>
 MeshData<D, Index> make_mesh(const PointView<D>& points, const DelaunayOptions& options);
+
+/// Throws Error(kTooLarge) if there are more of these things than points may be.
+template <class Index>
+void require_point_numbers(std::size_t count, const std::string& things);
 
 /// Throws Error(kTooLarge) if there are more than `most` of these things.
 void require_numbers(std::size_t count, std::size_t most, const std::string& things);

@@ -30,50 +30,17 @@ int side_of_facet(const std::array<Point<D>, D + 1>& corners, int i, const Point
   return orientation<D>(replaced);
 }
 
-/// The lowest number of all cells that have a place on their boundary, found from one of them
-/// across the facets that have it, too.
+/// The lowest number of all cells that have a place on their boundary, one of which is given.
 template <int D, class Index>
 Index lowest_cell_around(const MeshView<D, Index>& mesh, const Point<D>& place, Index cell) {
-  DistinctQueue<Index> cells;
-  cells.add(cell);
-  Index lowest = cell;
-  for (std::size_t next = 0; next < cells.size(); ++next) {
-    const Index current = cells[next];
-    lowest = std::min(lowest, current);
-    const auto corners = mesh.corners(current);
-    for (int i = 0; i <= D; ++i) {
-      const Index neighbour = mesh.neighbour(current, i);
-      if (neighbour >= 0 && side_of_facet<D>(corners, i, place) == 0) cells.add(neighbour);
-    }
-  }
-  return lowest;
+  return std::ranges::min(cells_around<D>(mesh, place, cell));
 }
 
-/// The lowest number of all vertices as far from a place as `nearest`, which is the nearest. They
-/// are the corners of a face of the Delaunay complex, hence joined by edges.
-template <int D, class Index>
-Index lowest_vertex_as_near(const MeshView<D, Index>& mesh, const Point<D>& place, Index nearest) {
-  DistinctQueue<Index> vertices;
-  vertices.add(nearest);
-  Index lowest = nearest;
-  for (std::size_t next = 0; next < vertices.size(); ++next) {
-    const Index centre = vertices[next];
-    lowest = std::min(lowest, centre);
-    DistinctQueue<Index> star;
-    star.add(mesh.vertex_cells[centre]);
-    for (std::size_t c = 0; c < star.size(); ++c) {
-      for (int i = 0; i <= D; ++i) {
-        const Index vertex = mesh.vertex(star[c], i);
-        if (vertex == centre) continue;
-        const Index neighbour = mesh.neighbour(star[c], i);
-        if (neighbour >= 0) star.add(neighbour);
-        if (compare_distances<D>(place, mesh.points[vertex], mesh.points[centre]) == 0) {
-          vertices.add(vertex);
-        }
-      }
-    }
-  }
-  return lowest;
+template <typename T>
+std::vector<T> items_of(const DistinctQueue<T>& queue) {
+  std::vector<T> items;
+  for (std::size_t i = 0; i < queue.size(); ++i) items.push_back(queue[i]);
+  return items;
 }
 
 /// A vertex and one of its cells, on the way to the nearest.
@@ -183,6 +150,46 @@ struct Walker {
 }  // namespace
 
 template <int D, class Index>
+std::vector<Index> cells_around(const MeshView<D, Index>& mesh, const Point<D>& place, Index cell) {
+  DistinctQueue<Index> cells;
+  cells.add(cell);
+  for (std::size_t next = 0; next < cells.size(); ++next) {
+    const Index current = cells[next];
+    const auto corners = mesh.corners(current);
+    for (int i = 0; i <= D; ++i) {
+      const Index neighbour = mesh.neighbour(current, i);
+      if (neighbour >= 0 && side_of_facet<D>(corners, i, place) == 0) cells.add(neighbour);
+    }
+  }
+  return items_of(cells);
+}
+
+/// They are the corners of a face of the Delaunay complex, hence joined by edges.
+template <int D, class Index>
+std::vector<Index> vertices_as_near(const MeshView<D, Index>& mesh, const Point<D>& place,
+                                    Index nearest) {
+  DistinctQueue<Index> vertices;
+  vertices.add(nearest);
+  for (std::size_t next = 0; next < vertices.size(); ++next) {
+    const Index centre = vertices[next];
+    DistinctQueue<Index> star;
+    star.add(mesh.vertex_cells[centre]);
+    for (std::size_t c = 0; c < star.size(); ++c) {
+      for (int i = 0; i <= D; ++i) {
+        const Index vertex = mesh.vertex(star[c], i);
+        if (vertex == centre) continue;
+        const Index neighbour = mesh.neighbour(star[c], i);
+        if (neighbour >= 0) star.add(neighbour);
+        if (compare_distances<D>(place, mesh.points[vertex], mesh.points[centre]) == 0) {
+          vertices.add(vertex);
+        }
+      }
+    }
+  }
+  return items_of(vertices);
+}
+
+template <int D, class Index>
 Location<Index> locate(const MeshView<D, Index>& mesh, const Point<D>& place, Index start) {
   Walk<D, Index> walk{place, start};
   while (go_on<D>(mesh, walk)) {
@@ -235,8 +242,19 @@ Index nearest_vertex(const MeshView<D, Index>& mesh, const Point<D>& place, Inde
   }
   while (go_nearer<D>(mesh, place, step)) {
   }
-  return step.ties ? lowest_vertex_as_near<D>(mesh, place, step.vertex) : step.vertex;
+  return step.ties ? std::ranges::min(vertices_as_near<D>(mesh, place, step.vertex)) : step.vertex;
 }
+
+#define SPILLWAY_INSTANTIATE_INDEX(D, Index)                                                      \
+  template std::vector<Index> cells_around<D>(const MeshView<D, Index>&, const Point<D>&, Index); \
+  template std::vector<Index> vertices_as_near<D>(const MeshView<D, Index>&, const Point<D>&,     \
+                                                  Index);
+#define SPILLWAY_INSTANTIATE(D)               \
+  SPILLWAY_INSTANTIATE_INDEX(D, std::int32_t) \
+  SPILLWAY_INSTANTIATE_INDEX(D, std::int64_t)
+SPILLWAY_FOR_EACH_DIMENSION(SPILLWAY_INSTANTIATE)
+#undef SPILLWAY_INSTANTIATE
+#undef SPILLWAY_INSTANTIATE_INDEX
 
 #define SPILLWAY_INSTANTIATE(D)                                                                 \
   template Location<std::int32_t> locate<D>(const MeshView<D, std::int32_t>&, const Point<D>&,  \

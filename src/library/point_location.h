@@ -29,6 +29,16 @@ std::vector<Location<Index>> locate_all(const MeshView<D, Index>& mesh,
                                         const StartTree<D, Index>& starts,
                                         std::span<const Point<D>> places);
 
+/// All cells that have a place inside or on their boundary, found from one of them across the
+/// facets that have it, too.
+template <int D, class Index>
+std::vector<Index> cells_around(const MeshView<D, Index>& mesh, const Point<D>& place, Index cell);
+
+/// All vertices as far from a place as `nearest`, which is the nearest.
+template <int D, class Index>
+std::vector<Index> vertices_as_near(const MeshView<D, Index>& mesh, const Point<D>& place,
+                                    Index nearest);
+
 /// The vertex nearest to a place, the lowest number of several. `start` is any cell; a near one
 /// saves time. Goes from vertex to nearer vertex along edges: where none is nearer, none in the
 /// mesh is, since a vertex's Voronoi cell is bounded by the bisectors to its neighbours.

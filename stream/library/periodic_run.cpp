@@ -10,9 +10,9 @@
 
 #include "formats/meshes/spool/mesh_spool.h"
 #include "src/error.h"
+#include "src/geometry/margin_survey.h"
 #include "src/parallel/parallel.h"
 #include "stream/ground/repeated_points.h"
-#include "stream/periodic/margin_survey.h"
 #include "stream/periodic/periodic_blocks.h"
 #include "stream/periodic/periodic_points.h"
 #include "stream/source/joined_inputs.h"
@@ -101,7 +101,9 @@ class PeriodicRun {
       points_.decode(slots[slot].piece, slots[slot].block);
     };
     const auto take = [&](std::size_t slot) {
-      if (torus_.closed()) survey.add(slots[slot].block.points);
+      if (torus_.closed()) {
+        survey.add(std::span<const LatticePoint>(slots[slot].block.points));
+      }
       count += slots[slot].block.size();
     };
     const std::vector<PipelineStep> steps = {{.in_order = false, .work = decode},
@@ -146,12 +148,17 @@ class PeriodicRun {
     RunSetup setup = run_.setup();
     setup.torus = &proof;
     Report report = triangulate_to(blocks, setup, run_);
-    if (!proof.holds()) {
-      if (domain_->widest()) refuse_few_points(proof);
+    const bool holds = proof.holds();
+    if (torus_.closed() && (holds || domain_->widest())) {
+      refuse_long_simplices(torus_, proof.reach);
+    }
+    if (!holds) {
+      if (domain_->widest()) {
+        throw std::logic_error("a periodic mesh is not closed: a fault of the program");
+      }
       tell_margin("is too narrow: once more with a wider one");
       return std::nullopt;
     }
-    if (reaches_half(proof)) refuse_few_points(proof);
     tell_margin("was enough");
     return report;
   }
@@ -165,34 +172,6 @@ class PeriodicRun {
     }
     run_.context.options().detail(
         fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
-  }
-
-  /// Whether a simplex of a closed torus is half a period long.
-  [[nodiscard]] bool reaches_half(const TorusProof& proof) const {
-    for (int k = 0; k < torus_.dimension(); ++k) {
-      if (torus_.closed() && 2 * proof.reach[k] >= torus_.period(k)) return true;
-    }
-    return false;
-  }
-
-  /// The simplices of a triangulation are told apart by their vertices if none is half a period
-  /// long along any axis (M. Caroli, M. Teillaud, "Computing 3D Periodic Triangulations", ESA 2009).
-  [[noreturn]] void refuse_few_points(const TorusProof& proof) const {
-    if (!reaches_half(proof)) {
-      throw std::logic_error("a periodic mesh is not closed: a fault of the program");
-    }
-    int axis = 0;
-    const auto share = [&](int k) { return proof.reach[k] / torus_.period(k); };
-    for (int k = 1; k < torus_.dimension(); ++k) {
-      if (share(k) > share(axis)) axis = k;
-    }
-    throw Failure(
-        fmt::format("too few points for a triangulation of the periodic box: a {} is {:.3g} of the "
-                    "period long along {}, and all must be shorter than half of it; add points "
-                    "where there are few, or repeat points and box two or three times along {}",
-                    torus_.dimension() == 2 ? "triangle" : "tetrahedron", share(axis), "xyz"[axis],
-                    "xyz"[axis]),
-        ErrorCode::kDegenerateInput);
   }
 
   void end(PeriodicBlocks& blocks, Report& report) const {

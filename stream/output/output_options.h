@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "src/geometry/lattice.h"
-#include "stream/periodic/periodic_domain.h"
+#include "src/geometry/periodic_domain.h"
 
 namespace spillway::stream {
 

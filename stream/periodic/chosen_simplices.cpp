@@ -102,7 +102,7 @@ Choice ChosenSimplices<D>::choose(const Corners& corners) {
   if (deep <= D) {
     const SimplexPlace<D> place = place_simplex<D>(domain_.torus(), points);
     const bool chosen = place.stands_for_all();
-    if ((chosen || deep == D) && reaches_beyond(place)) ++proof_.beyond_margin;
+    if ((chosen || deep == D) && !domain_.has_sphere(place)) ++proof_.beyond_margin;
     if (!chosen) return Choice::kLeftOut;
     add_facets(corners);
   }
@@ -182,21 +182,6 @@ void ChosenSimplices<D>::note_reach(const std::array<Point<D>, D + 1>& corners) 
     if (!domain_.torus().periodic(k)) continue;
     proof_.reach[k] = std::max(proof_.reach[k], geometry::reach<D>(corners, k));
   }
-}
-
-/// Whether the closed ball does.
-template <int D>
-bool ChosenSimplices<D>::reaches_beyond(const SimplexPlace<D>& place) const {
-  if (domain_.widest()) return false;
-  const Torus& torus = domain_.torus();
-  for (int k = 0; k < D; ++k) {
-    if (!torus.periodic(k)) continue;
-    const double margin = domain_.margin(k);
-    const bool inside = place.centre[k] - place.radius > torus.low(k) - margin &&
-                        place.centre[k] + place.radius < torus.high(k) + margin;
-    if (!inside) return true;
-  }
-  return false;
 }
 
 /// A facet, and on which side of it the simplex lies: `odd` is that of the place of the corner

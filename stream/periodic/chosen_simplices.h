@@ -6,9 +6,9 @@
 
 #include "formats/meshes/common/corner_offset.h"
 #include "src/delaunay/common/triangulation.h"
+#include "src/geometry/periodic_domain.h"
 #include "src/geometry/point.h"
 #include "src/geometry/torus_simplex.h"
-#include "stream/periodic/periodic_domain.h"
 #include "stream/periodic/torus_proof.h"
 
 namespace spillway::stream {
@@ -59,7 +59,6 @@ class ChosenSimplices {
 
   [[nodiscard]] std::uint64_t fingerprint(const Point<D>& point) const;
   void note_reach(const std::array<Point<D>, D + 1>& corners);
-  [[nodiscard]] bool reaches_beyond(const SimplexPlace<D>& place) const;
   [[nodiscard]] bool is_deep(const Point<D>& point) const;
   [[nodiscard]] std::uint64_t print_of(VertexId v);
   void add_facets(const Corners& corners);

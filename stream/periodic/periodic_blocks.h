@@ -6,8 +6,8 @@
 #include <spillway/detail/probing_table.h>
 #include <spillway/live_vertices.h>
 #include "formats/meshes/common/mesh_stream.h"
+#include "src/geometry/periodic_domain.h"
 #include "src/runtime/memory_budget.h"
-#include "stream/periodic/periodic_domain.h"
 
 namespace spillway::stream {
 

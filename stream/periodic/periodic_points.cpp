@@ -1,31 +1,8 @@
 #include "stream/periodic/periodic_points.h"
 
-#include <array>
 #include <cmath>
 
 namespace spillway::stream {
-namespace {
-
-/// The copies of a point along one axis, the point itself first.
-struct CopiesAlong {
-  std::array<double, 3> coordinates;
-  int count = 1;
-};
-
-CopiesAlong copies_along(const PeriodicDomain& domain, int axis, double coordinate) {
-  CopiesAlong copies{{coordinate}};
-  const Torus& torus = domain.torus();
-  if (axis >= torus.dimension() || !torus.periodic(axis)) return copies;
-  const double margin = domain.margin(axis);
-  for (const int periods : {1, -1}) {
-    const double copy = torus.moved(axis, coordinate, periods);
-    if (copy < torus.low(axis) - margin || copy > torus.high(axis) + margin) continue;
-    copies.coordinates[copies.count++] = copy;
-  }
-  return copies;
-}
-
-}  // namespace
 
 void PeriodicPoints::decode(SourcePiece& piece, PointBlock& block) {
   points_.decode(piece, block);
@@ -47,9 +24,9 @@ void PeriodicPoints::append_copies(PointBlock& block) const {
   for (std::size_t i = 0; i < count; ++i) {
     const LatticePoint point = block.points[i];
     if (!domain_->has_copies(point)) continue;
-    const CopiesAlong x = copies_along(*domain_, 0, point[0]);
-    const CopiesAlong y = copies_along(*domain_, 1, point[1]);
-    const CopiesAlong z = copies_along(*domain_, 2, point[2]);
+    const auto x = domain_->copies_along(0, point[0]);
+    const auto y = domain_->copies_along(1, point[1]);
+    const auto z = domain_->copies_along(2, point[2]);
     for (int n = 1; n < x.count * y.count * z.count; ++n) {
       block.points.emplace_back(x.coordinates[n % x.count], y.coordinates[n / x.count % y.count],
                                 z.coordinates[n / (x.count * y.count)]);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "stream/periodic/periodic_domain.h"
+#include "src/geometry/periodic_domain.h"
 #include "stream/source/point_stream.h"
 
 namespace spillway::stream {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "stream/checkpoint/checkpoints.h"
-#include "stream/periodic/periodic_domain.h"
+#include "src/geometry/periodic_domain.h"
 
 namespace spillway::stream {
 

@@ -7,6 +7,7 @@
 #include "products.h"
 #include "streams.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -125,6 +126,33 @@ spillway::ErrorCode fault_of(spillway::PointView<2> points,
   return {};
 }
 
+// Points that repeat with a box.
+void repeat() {
+  const auto atoms = random_points<3>(2000);
+
+  const spillway::PeriodicBox box{.box = {{0, 0, 0}, {1, 1, 1}}};
+  const spillway::Delaunay<3> packing(atoms, {.periodic = box});
+  double longest = 0;
+  for (std::size_t c = 0; c < packing.cell_count(); ++c) {
+    double squares = 0;  // of the edge from the first corner to the second
+    for (int k = 0; k < 3; ++k) {
+      const auto coordinate = [&](std::size_t corner) {
+        const std::int32_t vertex = packing.cell_vertices()[4 * c + corner];
+        const int periods = packing.cell_offsets()[3 * (4 * c + corner) + k];
+        return packing.points()[vertex][k] + periods * box.period(k);
+      };
+      const double along = coordinate(1) - coordinate(0);
+      squares += along * along;
+    }
+    longest = std::max(longest, std::sqrt(squares));
+  }
+
+  expect(packing.hull_facets().empty(), "a closed box has no hull");
+  expect(longest > 0 && longest < 0.5, "edges are short across the sides, too");
+  expect(packing.locate({1.25, -3.5, 0.5}) == packing.locate({0.25, 0.5, 0.5}),
+         "copies of a place lie in the same cell");
+}
+
 void catch_errors() {
   using spillway::ErrorCode;
   using Points = std::vector<spillway::Point<2>>;
@@ -169,6 +197,7 @@ int main() {
   triangulate_and_walk();
   use_arrays();
   ask();
+  repeat();
   catch_errors();
   cancel();
   keep_subnormal_numbers();

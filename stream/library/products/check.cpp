@@ -9,6 +9,7 @@
 #include "formats/disk/scratch_folder.h"
 #include "formats/points/attributes/further_coordinates.h"
 #include "src/error.h"
+#include "src/geometry/torus.h"
 #include "stream/checker/checker.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/context/run_watch.h"
@@ -18,6 +19,7 @@
 #include "stream/library/points/engine_points.h"
 #include "stream/library/points/program_points.h"
 #include "stream/library/products/point_comparison.h"
+#include "stream/periodic/periodic_points.h"
 
 namespace spillway::stream {
 namespace {
@@ -28,7 +30,7 @@ class Comparison {
  public:
   Comparison(PointSource* source, int dimension, const Context& context, RunWatch& watch,
              CheckerOptions& how)
-      : watch_(watch) {
+      : watch_(watch), dimension_(dimension) {
     if (source == nullptr) return;
     auto* points = OwnParts::of(*source);
     if (points == nullptr) points = &program_points_.emplace(*source, dimension);
@@ -51,14 +53,26 @@ class Comparison {
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
 
-  void run(const CheckerOptions& how, CheckReport& report) {
+  /// `periodic` is the box of the mesh, into which points are brought.
+  void run(const std::optional<PeriodicBox>& periodic, const CheckerOptions& how,
+           CheckReport& report) {
     if (input_ == nullptr) return;
+    if (periodic) {
+      const std::optional<IntegerLattice>& lattice = input_->lattice();
+      const Torus torus =
+          lattice ? Torus(*periodic, dimension_, *lattice) : Torus(*periodic, dimension_);
+      PeriodicPoints wrapped(*input_, torus);
+      vertices_->compare(wrapped, how, report, watch_);
+      report.points = wrapped.counts();
+      return;
+    }
     vertices_->compare(*input_, how, report, watch_);
     report.points = input_->counts();
   }
 
  private:
   RunWatch& watch_;
+  const int dimension_;
   std::optional<ProgramPoints> program_points_;
   PointStream* input_ = nullptr;
   std::shared_ptr<ScratchFolder> scratch_;
@@ -79,7 +93,7 @@ CheckReport check_whole(const Mesh& mesh, CheckerOptions& how, PointSource* poin
     }
   }
   watch.end(report.simplices);
-  comparison.run(how, report);
+  comparison.run(mesh.header.periodic, how, report);
   return report;
 }
 
@@ -92,7 +106,7 @@ CheckReport check_stream(MeshStreamReader& reader, CheckerOptions& how, PointSou
   watch.begin("check", "simplices");
   CheckReport report = check_mesh_stream(reader, how);
   watch.end(report.simplices);
-  comparison.run(how, report);
+  comparison.run(reader.header().periodic, how, report);
   return report;
 }
 

@@ -87,6 +87,10 @@ class Periodic : public ::testing::TestWithParam<int> {
         triangulate(*source, *create_mesh(path("mesh.spm"), {}, context), how, context);
     const CheckReport proof = check(*open_mesh(path("mesh.spm"), {}, context), {}, context);
     EXPECT_EQ(proof.fault_count, 0U) << (proof.faults.empty() ? "" : proof.faults[0]);
+    const auto same = points_in_memory(PointView<3>(points), {});
+    EXPECT_EQ(check(*open_mesh(path("mesh.spm"), {}, context), {}, context, same.get()).fault_count,
+              0U)
+        << "the vertices are other points";
     EXPECT_EQ(proof.canonical_hash, report.mesh.canonical_hash);
     EXPECT_EQ(proof.vertices, report.mesh.vertices);
     EXPECT_EQ(proof.simplices, report.mesh.simplices);

@@ -1,4 +1,4 @@
-#include "stream/periodic/margin_survey.h"
+#include "src/geometry/margin_survey.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace spillway::stream {
+namespace spillway::geometry {
 namespace {
 
 /// So many points tell how densely they lie.
@@ -29,20 +29,8 @@ MarginSurvey::MarginSurvey(const Torus& torus)
       dimension_(torus.dimension()),
       cells_(dimension_ == 2 ? 512 : 64),
       counts_(dimension_ == 2 ? std::size_t(cells_) * cells_
-                              : std::size_t(cells_) * cells_ * cells_) {}
-
-void MarginSurvey::add(std::span<const LatticePoint> points) {
-  std::array<double, 3> cells_per_unit{};
-  for (int k = 0; k < dimension_; ++k) cells_per_unit[k] = cells_ / torus_.period(k);
-  for (const LatticePoint& point : points) {
-    std::size_t cell = 0;
-    for (int k = dimension_ - 1; k >= 0; --k) {
-      const double along = (point[k] - torus_.low(k)) * cells_per_unit[k];
-      cell = cell * cells_ + std::min(static_cast<std::size_t>(along), std::size_t(cells_ - 1));
-    }
-    ++counts_[cell];
-  }
-  points_ += points.size();
+                              : std::size_t(cells_) * cells_ * cells_) {
+  for (int k = 0; k < dimension_; ++k) cells_per_unit_[k] = cells_ / torus_.period(k);
 }
 
 double MarginSurvey::margin() const {
@@ -104,4 +92,4 @@ double MarginSurvey::spacing_at_sides() const {
   }
 }
 
-}  // namespace spillway::stream
+}  // namespace spillway::geometry
