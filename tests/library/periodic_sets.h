@@ -52,6 +52,15 @@ std::vector<PeriodicSet<D>> periodic_sets() {
   return sets;
 }
 
+/// Some points of a lattice in a box with an open axis, so that its hull has many on a plane.
+template <int D>
+PeriodicSet<D> flat_hull(std::uint64_t seed) {
+  PeriodicSet<D> set{"flat hull", lattice_points<D>(8, seed), square_box<D>(0, 8)};
+  set.points.resize(D == 2 ? 12 : 85);
+  set.box.periodic[seed % D] = false;
+  return set;
+}
+
 /// The coordinates of a cell's corners, the first of all copies of it: its first vertex in the box'
 /// copy that the offsets say.
 template <int D>
