@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <optional>
 
-#include "stream/checkpoint/checkpoints.h"
 #include "src/geometry/periodic_domain.h"
+#include "stream/checkpoint/checkpoints.h"
 
 namespace spillway::stream {
 
