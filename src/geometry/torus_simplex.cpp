@@ -20,27 +20,32 @@ constexpr double kLargestRadius = 1024;
 /// By how much a computed radius may be too small.
 constexpr double kRoundedUp = 1 + 0x1p-30;
 
-/// The middle of the box around points that are given by their differences from one of them.
-template <int D, std::size_t Count>
-Point<D> middle_of(const std::array<Point<D>, Count>& differences) {
-  Point<D> middle;
-  for (int k = 0; k < D; ++k) {
-    double low = differences[0][k];
-    double high = low;
-    for (const Point<D>& difference : differences) {
-      low = std::min(low, difference[k]);
-      high = std::max(high, difference[k]);
-    }
-    middle[k] = (low + high) / 2;
-  }
-  return middle;
-}
-
 template <int D>
 Point<D> difference(const Point<D>& a, const Point<D>& b) {
   Point<D> difference;
   for (int k = 0; k < D; ++k) difference[k] = a[k] - b[k];
   return difference;
+}
+
+/// The centre of the smallest sphere through the corners, seen from the first one.
+template <int D>
+Point<D> centre_of_facet(const std::array<Point<D>, D>& corners) {
+  const Point<D> a = difference<D>(corners[1], corners[0]);
+  Point<D> centre;
+  if constexpr (D == 2) {
+    for (int k = 0; k < D; ++k) centre[k] = a[k] / 2;
+  } else {
+    // In its plane, as a sum of both edges.
+    const Point<D> b = difference<D>(corners[2], corners[0]);
+    const double aa = squared_length(a);
+    const double bb = squared_length(b);
+    const double ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const double twice = 2 * (aa * bb - ab * ab);
+    const double of_a = bb * (aa - ab) / twice;
+    const double of_b = aa * (bb - ab) / twice;
+    for (int k = 0; k < D; ++k) centre[k] = of_a * a[k] + of_b * b[k];
+  }
+  return centre;
 }
 
 /// Adds to the periods of `lowest` those that `centre`, seen from it, lies beyond.
@@ -160,10 +165,10 @@ bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet) 
 template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet) {
   if (!is_along_periods<D>(torus, facet)) return false;
-  const Point<D>& lowest = *std::min_element(facet.begin(), facet.end());
-  std::array<Point<D>, D> differences;
-  for (int i = 0; i < D; ++i) differences[i] = difference<D>(facet[i], lowest);
-  return periods_of_centre<D>(torus, lowest, middle_of<D>(differences)) == Periods<D>{};
+  std::array<Point<D>, D> sorted = facet;
+  std::sort(sorted.begin(), sorted.end());
+  const Point<D> centre = centre_of_facet<D>(sorted);
+  return periods_of_centre<D>(torus, sorted[0], centre) == Periods<D>{};
 }
 
 void refuse_long_simplices(const Torus& torus, const std::array<double, 3>& reach) {

@@ -40,9 +40,9 @@ SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D +
 template <int D>
 bool is_along_periods(const Torus& torus, const std::array<Point<D>, D>& facet);
 
-/// Whether a facet of the hull of some copies is one of the hull of all copies, as its plane is
-/// along all periodic axes, and stands for all copies of it: the middle of the box around it lies in
-/// the torus' box.
+/// Whether a facet of the hull of some copies is one of the hull of all copies (is_along_periods) and
+/// stands for all copies of it: the centre of the smallest sphere through its corners lies in the
+/// torus' box.
 template <int D>
 bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& facet);
 

@@ -208,6 +208,21 @@ TEST_P(Periodic, OpenLatticesHaveTwoFlatSides) {
   EXPECT_EQ(report.mesh.hull_facets, GetParam() == 2 ? 10U : 100U);
 }
 
+TEST_P(Periodic, FewPointsOfASmallGridBetweenOpenSidesAreProved) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    std::mt19937_64 random(seed);
+    std::vector<Point<3>> points(6 + random() % 30);
+    for (auto& point : points) {
+      for (double& x : point) x = static_cast<double>(random() % 8);
+    }
+    PeriodicBox box = cube(0, 8);
+    for (int k = 0; k < GetParam(); ++k) box.periodic[static_cast<std::size_t>(k)] = false;
+    box.periodic[seed % static_cast<std::uint64_t>(GetParam())] = true;
+    if (GetParam() == 3 && seed % 2 == 0) box.periodic[(seed + 1) % 3] = true;
+    proved(points, box);
+  }
+}
+
 TEST_P(Periodic, AMarginThatIsTooNarrowIsWidened) {
   // Most points lie far from the sides, and only some in the void there.
   const PeriodicBox box = cube(0, 1);
