@@ -85,6 +85,41 @@ struct Lines {
   }
 };
 
+/// Seven of ten points lie in haloes around uniform centres, with as many points at any distance up to
+/// the halo's radius (the singular isothermal sphere), and the others evenly. The unit box repeats.
+struct Haloes {
+  std::uint64_t seed;
+  int dimension;
+
+  Point<3> operator()(std::uint64_t i) const {
+    constexpr double kHaloes = 256;
+    constexpr double kRadius = 0.05;
+    Random random = Random::of_point(seed, i);
+    Point<3> p{};
+    if (random.uniform() >= 0.7) {
+      for (int k = 0; k < dimension; ++k) p[k] = random.uniform();
+      return p;
+    }
+    // The first haloes have most points, and are largest.
+    const double share = random.uniform();
+    const double halo = std::floor(kHaloes * share * share * share);
+    Random centre = Random::of_point(mix_bits(seed), static_cast<std::uint64_t>(halo));
+    const double distance = kRadius / std::sqrt(1 + halo / 8) * random.uniform();
+    const auto [u, v, s] = random.in_disc();
+    Point<3> direction{(u * u - v * v) / s, 2 * u * v / s, 0};
+    if (dimension == 3) {
+      const double factor = 2 * std::sqrt(1 - s);
+      direction = {u * factor, v * factor, 1 - 2 * s};
+    }
+    for (int k = 0; k < dimension; ++k) {
+      p[k] = centre.uniform() + distance * direction[k];
+      p[k] -= std::floor(p[k]);
+      if (p[k] >= 1) p[k] = 0;  // -1e-20, rounded
+    }
+    return p;
+  }
+};
+
 }  // namespace
 
 std::unique_ptr<PointGenerator> make_distribution(const GeneratorOptions& options) {
@@ -101,6 +136,8 @@ std::unique_ptr<PointGenerator> make_distribution(const GeneratorOptions& option
       return make_indexed(options, Ellipsoid{seed, dimension});
     case Family::kLines:
       return make_indexed(options, Lines{seed, dimension});
+    case Family::kHaloes:
+      return make_indexed(options, Haloes{seed, dimension});
     default:
       return nullptr;
   }

@@ -42,7 +42,7 @@ std::unique_ptr<PointGenerator> make_indexed(const GeneratorOptions& options, Sa
   return std::make_unique<IndexedGenerator<Sampler>>(options.count, std::move(sampler), lattice);
 }
 
-/// uniform, normal, bubbles, ellipsoid, lines; nullptr for other families.
+/// uniform, normal, bubbles, ellipsoid, lines, haloes; nullptr for other families.
 std::unique_ptr<PointGenerator> make_distribution(const GeneratorOptions& options);
 
 /// lattice, circle and the families from clusters on; nullptr for others.

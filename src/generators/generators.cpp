@@ -12,10 +12,10 @@
 namespace spillway::generators {
 namespace {
 
-constexpr std::array<const char*, 15> kNames = {
+constexpr std::array<const char*, 16> kNames = {
     "uniform", "normal", "bubbles",  "ellipsoid",  "lines",     "lattice",  "circle", "terrain",
-    "packing", "scan",   "clusters", "duplicates", "collinear", "coplanar", "utm"};
-static_assert(kNames.size() == static_cast<std::size_t>(Family::kUtm) + 1);
+    "packing", "scan",   "clusters", "duplicates", "collinear", "coplanar", "utm", "haloes"};
+static_assert(kNames.size() == static_cast<std::size_t>(Family::kHaloes) + 1);
 
 }  // namespace
 

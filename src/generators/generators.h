@@ -34,6 +34,7 @@ enum class Family {
   kCollinear,
   kCoplanar,
   kUtm,
+  kHaloes,
 };
 
 /// The names the command line takes, in the order of the enumeration.

@@ -104,7 +104,7 @@ TEST_P(EveryFamily, IsTheSameOnEveryMachineAndInEveryVersion) {
       {"clusters", 0x9fe1114c6cb00ba1ULL},  {"duplicates", 0x432eac0a00000000ULL},
       {"collinear", 0xbf5c572f78400000ULL}, {"coplanar", 0xc9b80b67f8000000ULL},
       {"utm", 0x3089ad458dcf5fa3ULL},       {"packing", 0x132d0f9a523dfbe3ULL},
-      {"scan", 0xc69ce40700000000ULL},
+      {"scan", 0xc69ce40700000000ULL},      {"haloes", 0x649c96ef0c65d50eULL},
   };
   EXPECT_EQ(fingerprint(in_blocks_of(999, options(10000, 3, 5))), fingerprints.at(GetParam()));
 }
@@ -119,7 +119,7 @@ TEST(FamilyNames, LeadBackToTheirFamilies) {
     EXPECT_EQ(family_by_name(names[i]), static_cast<Family>(i));
   }
   EXPECT_EQ(family_by_name("terrain"), Family::kTerrain);
-  EXPECT_EQ(family_by_name("utm"), Family::kUtm);
+  EXPECT_EQ(family_by_name("haloes"), Family::kHaloes);
 }
 
 TEST(FamilyNames, UnknownIsAnInvalidArgumentThatListsThem) {

@@ -130,3 +130,7 @@ spillway_test(stream_library_unit_test unit
 spillway_test(periodic_test property
   SOURCES stream/periodic/periodic_triangulation_test.cpp stream/checker/torus_proof_test.cpp
   LIBS spillway_stream spillway_library)
+
+spillway_test(density_test property
+  SOURCES stream/density/density_test.cpp
+  LIBS spillway_stream spillway_library)

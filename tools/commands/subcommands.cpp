@@ -7,6 +7,7 @@
   DO(dem)                        \
   DO(height)                     \
   DO(volume)                     \
+  DO(density)                    \
   DO(contour)                    \
   DO(render)                     \
   DO(info)                       \

@@ -1,0 +1,132 @@
+#include "stream/density/density_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace spillway::stream {
+namespace {
+
+/// What a place in a cell that rounding puts outside may lack, of 1.
+constexpr double kRounding = 1e-9;
+
+using Vector = std::array<double, 3>;
+
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+DensityGrid::DensityGrid(const MeshStreamHeader& header, const GridShape& shape)
+    : header_(header),
+      shape_(shape),
+      values_(shape.count(), std::numeric_limits<double>::quiet_NaN()) {}
+
+void DensityGrid::write(MeshStreamBlock&& block) {
+  const std::size_t own = block.vertices.size();
+  std::vector<Corner> vertices(own);
+  for (std::size_t v = 0; v < own; ++v) {
+    vertices[v].place = in_world(header_.lattice, block.vertices[v]);
+    std::memcpy(&vertices[v].density, &block.attributes[v * sizeof(double)], sizeof(double));
+  }
+  for (const std::uint64_t number : block.imported) vertices.push_back(live_.at(number));
+  const std::size_t size = static_cast<std::size_t>(header_.dimension) + 1;
+  const std::size_t first_across = block.corners.size() - block.offsets.size();
+  for (std::size_t c = 0; c < block.corners.size(); c += size) {
+    std::array<Corner, 4> corners;
+    for (std::size_t i = 0; i < size; ++i) {
+      corners[i] = vertices[block.corners[c + i]];
+      if (c < first_across) continue;
+      const CornerOffset offset = block.offsets[c + i - first_across];
+      for (int k = 0; k < header_.dimension; ++k) {
+        const int periods = periods_along(offset, k);
+        if (periods != 0) corners[i].place[k] += periods * header_.periodic->period(k);
+      }
+    }
+    paint(corners);
+  }
+  std::vector<bool> is_final(own);
+  for (const std::uint32_t v : block.finalized) {
+    if (v < own) {
+      is_final[v] = true;
+    } else {
+      live_.forget(block.imported[v - own]);
+    }
+  }
+  for (std::size_t v = 0; v < own; ++v) {
+    if (!is_final[v]) live_.enter(announced_ + v, vertices[v]);
+  }
+  announced_ += own;
+}
+
+/// The value is that of the first corner and the shares of the edges to the others.
+void DensityGrid::paint(const std::array<Corner, 4>& corners) {
+  const int dimension = header_.dimension;
+  std::array<Vector, 3> edges{};
+  Vector low = corners[0].place.numbers();
+  Vector high = low;
+  for (int i = 1; i <= dimension; ++i) {
+    for (int k = 0; k < dimension; ++k) {
+      const double x = corners[static_cast<std::size_t>(i)].place[k];
+      edges[static_cast<std::size_t>(i) - 1][k] = x - corners[0].place[k];
+      low[k] = std::min(low[k], x);
+      high[k] = std::max(high[k], x);
+    }
+  }
+  if (dimension == 2) edges[2] = {0, 0, 1};
+  // Rows of the inverse of the edges.
+  std::array<Vector, 3> inverse = {cross(edges[1], edges[2]), cross(edges[2], edges[0]),
+                                   cross(edges[0], edges[1])};
+  const double determinant = dot(edges[0], inverse[0]);
+  if (determinant == 0) return;
+  for (Vector& row : inverse) {
+    for (double& x : row) x /= determinant;
+  }
+  std::array<std::int64_t, 3> first{};
+  std::array<std::int64_t, 3> last{};
+  for (int k = 0; k < dimension; ++k) {
+    const double step = shape_.step(k);
+    first[k] = static_cast<std::int64_t>(std::ceil((low[k] - shape_.box.lo[k]) / step - 0.5));
+    last[k] = static_cast<std::int64_t>(std::floor((high[k] - shape_.box.lo[k]) / step - 0.5));
+    if (shape_.wraps[k]) continue;
+    first[k] = std::max<std::int64_t>(first[k], 0);
+    last[k] = std::min<std::int64_t>(last[k], std::int64_t{shape_.cells[k]} - 1);
+  }
+  std::array<std::int64_t, 3> cell{};
+  for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {
+      for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2]) {
+        Vector from_first{};
+        for (int k = 0; k < dimension; ++k) {
+          from_first[k] = shape_.centre(k, cell[k]) - corners[0].place[k];
+        }
+        double value = corners[0].density;
+        double rest = 1;
+        bool inside = true;
+        for (int i = 0; i < dimension; ++i) {
+          const auto n = static_cast<std::size_t>(i);
+          const double share = dot(inverse[n], from_first);
+          inside &= share >= -kRounding;
+          rest -= share;
+          value += share * (corners[n + 1].density - corners[0].density);
+        }
+        if (inside && rest >= -kRounding) set(cell, value);
+      }
+    }
+  }
+}
+
+void DensityGrid::set(const std::array<std::int64_t, 3>& cell, double value) {
+  std::size_t place = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::int64_t cells = shape_.cells[k];
+    place = place * shape_.cells[k] + static_cast<std::size_t>((cell[k] % cells + cells) % cells);
+  }
+  values_[place] = value;
+}
+
+}  // namespace spillway::stream
