@@ -22,7 +22,22 @@ double points_in_largest_sphere(std::uint64_t points, int dimension) {
   return 10.5 + std::log(static_cast<double>(points)) * (dimension - 1) / dimension;
 }
 
+/// Of the largest sphere near a side, in sides of the cube that has one point.
+double largest_radius(std::uint64_t points, int dimension) {
+  const double ball = dimension == 2 ? std::numbers::pi : 4 * std::numbers::pi / 3;
+  return std::pow(points_in_largest_sphere(points, dimension) / ball, 1.0 / dimension);
+}
+
 }  // namespace
+
+double margin_of_even_points(const Torus& torus, std::uint64_t points) {
+  if (points < kEnough) return kUnknown;
+  double volume = 1;
+  for (int k = 0; k < torus.dimension(); ++k) volume *= torus.period(k);
+  const double spacing =
+      std::pow(volume / static_cast<double>(points), 1.0 / torus.dimension());
+  return spacing * largest_radius(points, torus.dimension());
+}
 
 MarginSurvey::MarginSurvey(const Torus& torus)
     : torus_(torus),
@@ -35,9 +50,7 @@ MarginSurvey::MarginSurvey(const Torus& torus)
 
 double MarginSurvey::margin() const {
   if (points_ < kEnough) return kUnknown;
-  const double ball = dimension_ == 2 ? std::numbers::pi : 4 * std::numbers::pi / 3;
-  const double spheres = points_in_largest_sphere(points_, dimension_) / ball;
-  return spacing_at_sides() * std::pow(spheres, 1.0 / dimension_);
+  return spacing_at_sides() * largest_radius(points_, dimension_);
 }
 
 /// Where points lie least densely, the side of a cube that has one. Where a cell at a side has too

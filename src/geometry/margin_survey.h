@@ -11,6 +11,9 @@
 
 namespace spillway::geometry {
 
+/// The margin for points of a closed torus that lie evenly, or infinite for too few.
+double margin_of_even_points(const Torus& torus, std::uint64_t points);
+
 /// Counts points by the cells of a grid over a closed torus, to guess how wide a margin of copies
 /// the circumspheres near its sides need. Another guess costs time, never the result.
 class MarginSurvey {

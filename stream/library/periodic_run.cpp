@@ -22,20 +22,11 @@ namespace {
 
 constexpr double kWidest = std::numeric_limits<double>::infinity();
 
-/// A margin that was too narrow is made so many times wider.
-constexpr double kWiden = 1.6;
-
 /// Pieces under way at a time, for each thread and one more.
 constexpr std::size_t kPiecesPerThread = 2;
 
 bool can_read_again(const RunPoints& points) {
   return points.files != nullptr && points.files->any_order() && !points.files->thins();
-}
-
-Torus torus_of(const RunPoints& points, const TriangulateOptions& options) {
-  const std::optional<IntegerLattice>& lattice = points.stream->lattice();
-  return lattice ? Torus(*options.periodic, options.dimension, *lattice)
-                 : Torus(*options.periodic, options.dimension);
 }
 
 class PeriodicRun {
@@ -46,20 +37,20 @@ class PeriodicRun {
         has_input_index_(std::exchange(run.engine.asked.input_index, true)),
         repeated_(*run.points.stream, can_read_again(run.points), *run.scratch,
                   RepeatedIndex::kInput),
-        points_(repeated_, torus_) {
+        copies_(torus_),
+        points_(repeated_, copies_) {
     run.points.stream = &points_;
     run.points.extent.reset();
   }
 
   Report run() {
-    const MeshStart start = this->start();
+    const MeshStart start = periodic_start(run_, torus_, has_input_index_);
     const bool direct = run_.sink.can_begin_again();
     BlockSink* sink = &run_.sink.start(start);
     double margin = survey();
     for (bool first = true;; first = false) {
       domain_.emplace(torus_, margin);
-      points_.set_margin(margin);
-      points_.forget_counts();
+      copies_.begin(*domain_);
       repeated_.repeat();
       run_.engine.periodic = domain_;
       if (!first && direct) sink = run_.sink.begin_again();
@@ -73,16 +64,6 @@ class PeriodicRun {
   }
 
  private:
-  /// What the header of the mesh says.
-  [[nodiscard]] MeshStart start() const {
-    MeshStart start = run_.start();
-    start.header.has_input_index = has_input_index_;
-    start.header.points = run_.points.records;
-    start.header.periodic =
-        run_.points.stream->lattice() ? run_.engine.asked.periodic : torus_.box();
-    return start;
-  }
-
   /// Reads all points, and returns a margin for copies of them.
   double survey() {
     struct Slot {
@@ -118,7 +99,7 @@ class PeriodicRun {
   std::optional<Report> to_sink(BlockSink& sink) {
     PeriodicBlocks blocks(sink, *domain_, has_input_index_, run_.budget);
     std::optional<Report> report = triangulate(blocks);
-    if (report) end(blocks, *report);
+    if (report) end_blocks(blocks, *report);
     return report;
   }
 
@@ -138,7 +119,7 @@ class PeriodicRun {
       blocks.write(std::move(block));
       block = {};
     }
-    end(blocks, *report);
+    end_blocks(blocks, *report);
     return report;
   }
 
@@ -148,48 +129,68 @@ class PeriodicRun {
     RunSetup setup = run_.setup();
     setup.torus = &proof;
     Report report = triangulate_to(blocks, setup, run_);
-    const bool holds = proof.holds();
-    if (torus_.closed() && (holds || domain_->widest())) {
-      refuse_long_simplices(torus_, proof.reach);
-    }
-    if (!holds) {
-      if (domain_->widest()) {
-        throw std::logic_error("a periodic mesh is not closed: a fault of the program");
-      }
-      tell_margin("is too narrow: once more with a wider one");
-      return std::nullopt;
-    }
-    tell_margin("was enough");
+    if (!is_proved(proof, *domain_, run_.context)) return std::nullopt;
     return report;
-  }
-
-  void tell_margin(const char* what) const {
-    if (!run_.context.options().detail) return;
-    double widest = 0;
-    for (int k = 0; k < torus_.dimension(); ++k) {
-      if (!torus_.periodic(k)) continue;
-      widest = std::max(widest, domain_->margin(k) / torus_.period(k));
-    }
-    run_.context.options().detail(
-        fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
-  }
-
-  void end(PeriodicBlocks& blocks, Report& report) const {
-    blocks.finish(report.mesh);
-    report.mesh.vertices = blocks.vertices();
-    report.mesh.points = report.points.kept();
-    report.mesh.duplicates = report.mesh.points - report.mesh.vertices;
   }
 
   Run& run_;
   const Torus torus_;
   const bool has_input_index_;
   RepeatedPoints repeated_;
+  PeriodicCopies copies_;
   PeriodicPoints points_;
   std::optional<PeriodicDomain> domain_;
 };
 
+void tell_margin(const PeriodicDomain& domain, const char* what, const Context& context) {
+  if (!context.options().detail) return;
+  const Torus& torus = domain.torus();
+  double widest = 0;
+  for (int k = 0; k < torus.dimension(); ++k) {
+    if (torus.periodic(k)) widest = std::max(widest, domain.margin(k) / torus.period(k));
+  }
+  context.options().detail(
+      fmt::format("a margin of {:.3g} periods for copies of points {}", widest, what));
+}
+
 }  // namespace
+
+Torus torus_of(const RunPoints& points, const TriangulateOptions& options) {
+  const std::optional<IntegerLattice>& lattice = points.stream->lattice();
+  return lattice ? Torus(*options.periodic, options.dimension, *lattice)
+                 : Torus(*options.periodic, options.dimension);
+}
+
+MeshStart periodic_start(const Run& run, const Torus& torus, bool has_input_index) {
+  MeshStart start = run.start();
+  start.header.has_input_index = has_input_index;
+  start.header.periodic =
+      run.points.stream->lattice() ? run.engine.asked.periodic : std::optional(torus.box());
+  start.header.extent.reset();
+  return start;
+}
+
+bool is_proved(const TorusProof& proof, const PeriodicDomain& domain, const Context& context) {
+  const Torus& torus = domain.torus();
+  const bool holds = proof.holds();
+  if (torus.closed() && (holds || domain.widest())) refuse_long_simplices(torus, proof.reach);
+  if (holds) {
+    tell_margin(domain, "was enough", context);
+    return true;
+  }
+  if (domain.widest()) {
+    throw std::logic_error("a periodic mesh is not closed: a fault of the program");
+  }
+  tell_margin(domain, "is too narrow: once more with a wider one", context);
+  return false;
+}
+
+void end_blocks(PeriodicBlocks& blocks, Report& report) {
+  blocks.finish(report.mesh);
+  report.mesh.vertices = blocks.vertices();
+  report.mesh.points = report.points.kept();
+  report.mesh.duplicates = report.mesh.points - report.mesh.vertices;
+}
 
 void check_periodic(const TriangulateOptions& options, const EngineSink& sink) {
   if (options.dimension > 3) {

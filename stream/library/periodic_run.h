@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "stream/library/run.h"
+#include "stream/periodic/periodic_blocks.h"
+#include "stream/periodic/torus_proof.h"
 
 namespace spillway::stream {
 
@@ -12,5 +16,21 @@ void check_periodic(const TriangulateOptions& options, const EngineSink& sink);
 /// index. Reads them once to guess a margin for their copies, and again to triangulate, with a
 /// wider margin where that was too narrow.
 Report triangulate_periodically(Run& run);
+
+/// A margin that was too narrow is made so many times wider.
+inline constexpr double kWiden = 1.6;
+
+/// The torus of a run, in the coordinates of its points.
+Torus torus_of(const RunPoints& points, const TriangulateOptions& options);
+
+/// What the header of a periodic mesh says.
+MeshStart periodic_start(const Run& run, const Torus& torus, bool has_input_index);
+
+/// Whether what was triangulated in the domain is the triangulation of the torus; if not, a wider
+/// margin is needed. Throws Failure (kDegenerateInput) for too few points.
+bool is_proved(const TorusProof& proof, const PeriodicDomain& domain, const Context& context);
+
+/// Ends the blocks of a periodic mesh, and puts its totals into the report.
+void end_blocks(PeriodicBlocks& blocks, Report& report);
 
 }  // namespace spillway::stream

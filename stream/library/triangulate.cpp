@@ -160,10 +160,8 @@ Report triangulate(PointSource& source, MeshSink& sink, const TriangulateOptions
   if (!options.resume_folder.empty()) run.identity = identity_of(run, *points);
   Report report;
   if (options.periodic) {
-    if (executor != nullptr) {
-      throw InvalidArgument("a periodic triangulation is made by one process: leave mpirun out");
-    }
-    report = triangulate_periodically(run);
+    report = executor != nullptr ? executor->triangulate_periodically(run)
+                                 : triangulate_periodically(run);
   } else if (executor != nullptr) {
     report = executor->triangulate(run);
   } else {

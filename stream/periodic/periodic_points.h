@@ -1,53 +1,52 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <optional>
 
-#include "src/geometry/periodic_domain.h"
+#include "stream/periodic/periodic_copies.h"
 #include "stream/source/point_stream.h"
 
 namespace spillway::stream {
 
-/// Points brought into a periodic box, and behind those of each block their copies within a margin
-/// around it. A copy has the index and the attributes of its point.
+/// Points as PeriodicCopies make them.
 class PeriodicPoints final : public PointStream {
  public:
-  /// Without a margin, until one is set. `points` must outlive it.
-  PeriodicPoints(PointStream& points, const Torus& torus) : points_(points), torus_(torus) {}
-
-  /// Of what is decoded from now on.
-  void set_margin(double margin) { domain_.emplace(torus_, margin); }
-  /// Forgets what became of points so far: they come again.
-  void forget_counts() { wrapped_ = rounded_ = 0; }
+  /// Both must outlive it.
+  PeriodicPoints(PointStream& points, PeriodicCopies& copies) : points_(points), copies_(copies) {}
 
   bool fetch(SourcePiece& piece) override { return points_.fetch(piece); }
-  void decode(SourcePiece& piece, PointBlock& block) override;
+  void decode(SourcePiece& piece, PointBlock& block) override {
+    points_.decode(piece, block);
+    copies_.apply(block);
+  }
 
   [[nodiscard]] const std::optional<IntegerLattice>& lattice() const override {
     return points_.lattice();
   }
   /// With copies.
-  [[nodiscard]] std::optional<std::uint64_t> expected() const override;
+  [[nodiscard]] std::optional<std::uint64_t> expected() const override {
+    const std::optional<std::uint64_t> points = points_.expected();
+    return points ? std::optional(copies_.with_copies(*points)) : points;
+  }
   [[nodiscard]] const std::optional<Box<3>>& extent() const override { return extent_; }
   [[nodiscard]] std::uint64_t known_bytes() const override { return points_.known_bytes(); }
 
   /// Without copies.
-  [[nodiscard]] PointCounts counts() const override;
+  [[nodiscard]] PointCounts counts() const override {
+    PointCounts counts = points_.counts();
+    counts.wrapped = copies_.wrapped();
+    counts.rounded = copies_.rounded();
+    return counts;
+  }
   [[nodiscard]] std::uint64_t points_read() const override { return points_.points_read(); }
   [[nodiscard]] std::optional<double> fraction_read() const override {
     return points_.fraction_read();
   }
 
  private:
-  void append_copies(PointBlock& block) const;
-
   PointStream& points_;
-  const Torus& torus_;
-  std::optional<PeriodicDomain> domain_;
-  std::optional<Box<3>> extent_;  ///< is not known
-  std::atomic<std::uint64_t> wrapped_ = 0;
-  std::atomic<std::uint64_t> rounded_ = 0;
+  PeriodicCopies& copies_;
+  const std::optional<Box<3>> extent_;  ///< is not known
 };
 
 }  // namespace spillway::stream

@@ -85,10 +85,10 @@ class CollectedStream : public InputFile {
 class CollectedMeshOutput : public MeshOutput {
  public:
   /// At rank 0 there is one of the two: the writer, or the file of a stream that is copied.
-  CollectedMeshOutput(const MeshTarget& target, const MeshStreamHeader& header,
+  CollectedMeshOutput(const std::string& name, const MeshStreamHeader& header,
                       ScratchFolder& scratch, const Ranks& ranks,
                       std::unique_ptr<MeshStreamWriter> writer, std::unique_ptr<OutputFile> stream)
-      : MeshOutput(header, target.path, scratch),
+      : MeshOutput(header, name, scratch),
         ranks_(ranks),
         writer_(std::move(writer)),
         stream_(std::move(stream)) {}
@@ -162,7 +162,7 @@ std::unique_ptr<MeshOutput> open_one_file(FileSystem& files, const MeshTarget& t
   }
   ranks.broadcast(temporary_path, 0);
   if (temporary_path.empty()) {
-    return std::make_unique<CollectedMeshOutput>(target, header, scratch, ranks, std::move(writer),
+    return std::make_unique<CollectedMeshOutput>(target.path, header, scratch, ranks, std::move(writer),
                                                  std::move(created.main));
   }
   return open_shared_file(target, header, scratch, ranks, std::move(created.main),
@@ -182,6 +182,13 @@ void finish_own_blocks(MeshSpool& spool, const RankMesh& mesh) {
     totals.simplices = mesh.sections[*mesh.own_section].simplices;
   }
   spool.finish(totals);
+}
+
+std::unique_ptr<MeshOutput> collect_mesh(const std::string& name, const MeshStreamHeader& header,
+                                         ScratchFolder& scratch, const Ranks& ranks,
+                                         std::unique_ptr<MeshStreamWriter> writer) {
+  return std::make_unique<CollectedMeshOutput>(name, header, scratch, ranks, std::move(writer),
+                                               nullptr);
 }
 
 std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget& target,

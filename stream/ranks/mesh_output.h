@@ -52,4 +52,9 @@ std::unique_ptr<MeshOutput> open_mesh_output(FileSystem& files, const MeshTarget
                                              const MeshStreamHeader& header, ScratchFolder& scratch,
                                              const distributed::Ranks& ranks);
 
+/// The blocks of all ranks, which rank 0 gives to its `writer`; others have none.
+std::unique_ptr<MeshOutput> collect_mesh(const std::string& name, const MeshStreamHeader& header,
+                                         ScratchFolder& scratch, const distributed::Ranks& ranks,
+                                         std::unique_ptr<MeshStreamWriter> writer);
+
 }  // namespace spillway::ranks

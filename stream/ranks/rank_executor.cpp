@@ -16,6 +16,7 @@
 #include "stream/pipeline.h"
 #include "stream/ranks/exchange/collective_step.h"
 #include "stream/ranks/mesh_output.h"
+#include "stream/ranks/periodic_ranks.h"
 #include "stream/ranks/rank_pipeline.h"
 #include "stream/ranks/resumable_share.h"
 #include "stream/ranks/share_messages.h"
@@ -60,6 +61,10 @@ class RankExecutor final : public Executor {
       share.tell_how_to_go_on(error);
       throw;
     }
+  }
+
+  Report triangulate_periodically(Run& run) override {
+    return ranks::triangulate_periodically(run, ranks_);
   }
 
  private:

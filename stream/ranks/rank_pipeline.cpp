@@ -61,6 +61,7 @@ class RankRun final : public RunPhases<D> {
       this->walk();
     });
     release_base_case_memory();
+    if (setup().torus != nullptr) *setup().torus = engine().torus();
     return std::move(result_);
   }
 
@@ -436,14 +437,15 @@ std::unique_ptr<JoinedInputs> open_shared_source(FileSystem& files, std::vector<
 PointCounts shared_counts(const PointCounts& own, const Ranks& ranks) {
   std::vector<std::uint64_t> sums = {own.read,    own.invalid, own.withheld, own.skipped,
                                      own.classes, own.returns, own.bounds,   own.clip,
-                                     own.thinned, own.lost,    own.where};
+                                     own.thinned, own.lost,    own.where,    own.wrapped,
+                                     own.rounded};
   const std::size_t counts = sums.size();
   for (std::size_t c = 0; c < own.other_classes.size(); ++c) {
     sums.push_back(own.other_classes.test(c) ? 1 : 0);
   }
   ranks.reduce(sums, Reduction::kSum);
   PointCounts all{sums[0], sums[1], sums[2], sums[3], sums[4],
-                  sums[5], sums[6], sums[7], sums[8], sums[9], sums[10]};
+                  sums[5], sums[6], sums[7], sums[8], sums[9], sums[10], sums[11], sums[12]};
   for (std::size_t c = 0; c < all.other_classes.size(); ++c) {
     all.other_classes.set(c, sums[counts + c] > 0);
   }

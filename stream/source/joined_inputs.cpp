@@ -100,7 +100,9 @@ std::optional<std::uint64_t> JoinedInputs::count() const {
 }
 
 std::optional<std::uint64_t> JoinedInputs::expected() const {
-  return thins() ? std::nullopt : facts_.expected(options_.filter);
+  if (thins()) return std::nullopt;
+  const std::optional<std::uint64_t> points = facts_.expected(options_.filter);
+  return points && copies_ != nullptr ? std::optional(copies_->with_copies(*points)) : points;
 }
 
 /// Of regions also what the plan of a run knows of each.
@@ -245,6 +247,7 @@ void JoinedInputs::decode(SourcePiece& piece, PointBlock& block) {
   } else {
     std::swap(piece.raw.decoded, block);
   }
+  if (copies_ != nullptr) copies_->apply(block, piece.counted);
   if (!options_.index) block.index = {};
 }
 
@@ -333,6 +336,10 @@ PointCounts JoinedInputs::counts() const {
   PointCounts counts = counts_;
   counts.lost += lost_in_headers_;
   if (thinning_) counts.thinned = thinning_->dropped();
+  if (copies_ != nullptr) {
+    counts.wrapped = copies_->wrapped();
+    counts.rounded = copies_->rounded();
+  }
   return counts;
 }
 

@@ -15,6 +15,7 @@
 #include "formats/points/common/point_reader.h"
 #include "src/geometry/box.h"
 #include "src/geometry/lattice.h"
+#include "stream/periodic/periodic_copies.h"
 #include "stream/points/point_feed.h"
 #include "stream/source/header_survey.h"
 #include "stream/source/input_crs.h"
@@ -78,6 +79,14 @@ class JoinedInputs : public PointStream {
   void carry(const AttributeChoice& choice);
   /// The layout of their records.
   [[nodiscard]] const AttributeLayout& attributes() const { return attributes_; }
+
+  /// From now on blocks have copies of their points in a periodic domain, and nothing is known of
+  /// where points lie. `copies` must outlive the source.
+  void repeat_in(PeriodicCopies& copies) {
+    copies_ = &copies;
+    extent_.reset();
+    world_extent_.reset();
+  }
 
   [[nodiscard]] const SourceFacts& facts() const { return facts_; }
   /// The files that are read, in their order.
@@ -174,6 +183,7 @@ class JoinedInputs : public PointStream {
   std::uint64_t lost_in_headers_ = 0;   ///< points, told by headers that this process looked at
   std::vector<std::size_t> positions_;  ///< in the plan, by region; none if there is no plan
   PieceSequence pieces_;
+  PeriodicCopies* copies_ = nullptr;  ///< null: there are none
   std::optional<Box<3>> world_extent_;
   std::optional<Box<3>> extent_;
   AttributeLayout attributes_;

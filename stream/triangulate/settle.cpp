@@ -65,10 +65,11 @@ class Settlement {
   /// that are final do not: nothing of them is in the mesh, and each of their vertices has finite
   /// ones.
   void mark_all_uses() {
+    choose_all();
     for (std::size_t s = 0; s < part_.simplex_count(); ++s) {
       if (part_.fates[s] == Fate::kFinal) {
         const Corners corners = part_.finite_simplex(s);
-        const std::uint8_t use = is_too_long(corners) ? kByFinal : kByFinal | kByEmitted;
+        const std::uint8_t use = is_left_out(s, corners) ? kByFinal : kByFinal | kByEmitted;
         for (const VertexId v : corners) use_[v] |= use;
       } else if (part_.fates[s] == Fate::kKept) {
         ++kept_;
@@ -79,7 +80,30 @@ class Settlement {
     }
   }
 
-  /// The same where nothing is left out, without a look at most simplices. A vertex without kept
+  [[nodiscard]] bool is_left_out(std::size_t s, const Corners& corners) const {
+    return choices_.empty() ? is_too_long(corners) : choices_[s] == Choice::kLeftOut;
+  }
+
+  /// In a periodic domain, of the simplices that are final.
+  void choose_all() {
+    if constexpr (D <= kMostPeriodic) {
+      if (!chooses()) return;
+      choices_.resize(part_.simplex_count(), Choice::kInside);
+      for (std::size_t s = 0; s < choices_.size(); ++s) {
+        if (part_.fates[s] == Fate::kFinal) choices_[s] = choice_of(part_.finite_simplex(s));
+      }
+    }
+  }
+
+  /// To be asked once of each.
+  Choice choice_of(const Corners& corners) {
+    if constexpr (D <= kMostPeriodic) {
+      if (!chosen_->is_inside(corners)) return chosen_->choose(corners);
+    }
+    return Choice::kInside;
+  }
+
+  /// The same where nothing is left out, or copies only, without a look at most simplices. A vertex without kept
   /// ones has final ones. Of a vertex with kept ones, a final one is the neighbour of a kept one,
   /// as its finite simplices are connected, and each of its infinite ones is beside a finite one.
   void mark_uses_from_border() {
@@ -236,13 +260,15 @@ class Settlement {
 
   void list_chosen(std::size_t s, std::size_t end) {
     while (s < end) {
+      Choice choice = Choice::kInside;
       std::size_t inside = s;
-      while (inside < end && chosen_->is_inside(part_.finite_simplex(inside))) ++inside;
+      for (; inside < end; ++inside) {
+        choice = choices_.empty() ? choice_of(part_.finite_simplex(inside)) : choices_[inside];
+        if (choice != Choice::kInside) break;
+      }
       list(s, inside);
       if (inside == end) return;
       s = inside + 1;
-      const Choice choice = chosen_->choose(part_.finite_simplex(inside));
-      if (choice == Choice::kInside) list(inside, s);
       if (choice == Choice::kAcross) {
         list(inside, s, [this](const Corners& corners) { return chosen_->ordered(corners); });
       }
@@ -321,7 +347,8 @@ class Settlement {
   std::unique_ptr<VertexId[]> kept_number_;        // by vertex, if it is in the border
   std::vector<std::uint64_t> hashes_;              // by short number
   std::optional<ChosenSimplices<std::min(D, kMostPeriodic)>> chosen_;  // in a periodic domain
-  std::size_t kept_ = 0;                                               // simplices
+  std::vector<Choice> choices_;  // by simplex; empty: not yet known
+  std::size_t kept_ = 0;         // simplices
   std::array<std::array<std::uint32_t, D + 1>, kListed> list_;
   std::size_t listed_ = 0;
   Settled<D> result_;

@@ -30,6 +30,8 @@ class Executor {
 
   /// As spillway::triangulate(), of such a source. Only the first process gets a whole report.
   virtual Report triangulate(stream::Run& run) = 0;
+  /// The same of points that repeat with a box (TriangulateOptions::periodic).
+  virtual Report triangulate_periodically(stream::Run& run) = 0;
 };
 
 }  // namespace spillway

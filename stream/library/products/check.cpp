@@ -61,7 +61,8 @@ class Comparison {
       const std::optional<IntegerLattice>& lattice = input_->lattice();
       const Torus torus =
           lattice ? Torus(*periodic, dimension_, *lattice) : Torus(*periodic, dimension_);
-      PeriodicPoints wrapped(*input_, torus);
+      PeriodicCopies no_copies(torus);
+      PeriodicPoints wrapped(*input_, no_copies);
       vertices_->compare(wrapped, how, report, watch_);
       report.points = wrapped.counts();
       return;

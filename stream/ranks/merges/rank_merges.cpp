@@ -13,6 +13,7 @@
 #include "src/parallel/parallel.h"
 #include "src/runtime/packing.h"
 #include "src/runtime/work_lease.h"
+#include "stream/periodic/chosen_simplices.h"
 #include "stream/ranks/exchange/message_size.h"
 #include "stream/ranks/exchange/messages.h"
 #include "stream/ranks/merges/gather_below.h"
@@ -197,11 +198,11 @@ void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& tas
     finals = share_->settle(exposure_of_new(statistics_.size() + 1));
   }
   const WorkTimer work(task.after[2].seconds);
-  const std::size_t all = finals.size();
-  std::erase_if(finals, [](const Corners& corners) {
-    return std::ranges::find(corners, kInfiniteVertex) != corners.end();
+  const auto finite = std::ranges::stable_partition(finals, [](const Corners& corners) {
+    return std::ranges::find(corners, kInfiniteVertex) == corners.end();
   });
-  engine_.count_hull_facets(all - finals.size());
+  engine_.count_hull_facets(hull_facets_of(std::span(finite.begin(), finite.end())));
+  finals.erase(finite.begin(), finite.end());
   Told told = news_of(finals);
   const News asked = exchange_within(group, std::move(told.news), limits);
   for (const auto& [rank, news] : asked) owned_->note(news);
@@ -224,6 +225,22 @@ void RankMerges<D>::settle(const Step& step, const ItemLimits& limits, Task& tas
   told.held.resize(share_->own_points());
   held_ = std::move(told.held);
   held_.resize(share_->points().size(), 1);
+}
+
+/// How many of these infinite simplices have a facet of the hull.
+template <int D>
+std::uint64_t RankMerges<D>::hull_facets_of(std::span<const Corners> infinite) {
+  if constexpr (D <= 3) {
+    if (output_.periodic != nullptr) {
+      const auto& points = share_->points();
+      stream::ChosenSimplices<D> chosen(*output_.periodic, {points.begin(), points.end()});
+      std::uint64_t count = 0;
+      for (const Corners& corners : infinite) count += chosen.choose_infinite(corners) ? 1 : 0;
+      engine_.count_torus(chosen.proof());
+      return count;
+    }
+  }
+  return infinite.size();
 }
 
 /// What the owners of vertices are to know of this merge, in which these simplices became final.
@@ -287,6 +304,7 @@ std::optional<SectionDraft> RankMerges<D>::emit(Border<D> finals, std::uint32_t 
   Settled<D> settled =
       stream::settle<D>(MergeToSettle<D>{.block = {}, .merged = finals, .fates = fates}, output_);
   engine_.count_left_out(settled.left_out);
+  engine_.count_torus(settled.torus);
   SectionDraft draft;
   draft.section.section = section;
   draft.section.canonical_hash = settled.hash.value();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "src/distributed/merge_halves.h"
@@ -53,6 +54,7 @@ class RankMerges {
   void merge_halves(const Step& step, distributed::ItemLimits limits, Task& task,
                     RankMerge& statistics);
   void settle(const Step& step, const distributed::ItemLimits& limits, Task& task);
+  std::uint64_t hull_facets_of(std::span<const Corners> infinite);
   [[nodiscard]] Told news_of(const std::vector<Corners>& finals);
   [[nodiscard]] Border<D> fetch_used(const distributed::Group& group, const News& asked,
                                      const distributed::ItemLimits& limits) const;

@@ -1,11 +1,12 @@
-#include "stream/periodic/periodic_points.h"
+#include "stream/periodic/periodic_copies.h"
 
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 namespace spillway::stream {
 
-void PeriodicPoints::decode(SourcePiece& piece, PointBlock& block) {
-  points_.decode(piece, block);
+void PeriodicCopies::apply(PointBlock& block, bool counted) {
   std::uint64_t wrapped = 0;
   std::uint64_t rounded = 0;
   for (LatticePoint& point : block.points) {
@@ -13,12 +14,14 @@ void PeriodicPoints::decode(SourcePiece& piece, PointBlock& block) {
     wrapped += wrapping.moved ? 1 : 0;
     rounded += wrapping.rounded ? 1 : 0;
   }
-  wrapped_ += wrapped;
-  rounded_ += rounded;
+  if (counted) {
+    wrapped_ += wrapped;
+    rounded_ += rounded;
+  }
   if (domain_) append_copies(block);
 }
 
-void PeriodicPoints::append_copies(PointBlock& block) const {
+void PeriodicCopies::append_copies(PointBlock& block) const {
   const std::size_t count = block.size();
   const std::size_t record_size = block.record_size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -39,21 +42,13 @@ void PeriodicPoints::append_copies(PointBlock& block) const {
   }
 }
 
-std::optional<std::uint64_t> PeriodicPoints::expected() const {
-  const std::optional<std::uint64_t> points = points_.expected();
-  if (!points || !domain_) return points;
+std::uint64_t PeriodicCopies::with_copies(std::uint64_t points) const {
+  if (!domain_) return points;
   double copies = 1;
   for (int k = 0; k < torus_.dimension(); ++k) {
     if (torus_.periodic(k)) copies *= 1 + 2 * domain_->margin(k) / torus_.period(k);
   }
-  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(*points) * copies));
-}
-
-PointCounts PeriodicPoints::counts() const {
-  PointCounts counts = points_.counts();
-  counts.wrapped = wrapped_;
-  counts.rounded = rounded_;
-  return counts;
+  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(points) * copies));
 }
 
 }  // namespace spillway::stream
