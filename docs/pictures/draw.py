@@ -45,6 +45,7 @@ def main():
         draw_aslant(scene)
         draw_page(scene)
         draw_section(scene)
+        draw_haloes(scene)
         draw_border(scene)
         draw_resident_border(scene, int(arguments.points))
 
@@ -249,6 +250,16 @@ def draw_section(scene):
     scene.spillway("generate", "scan", "-n", "1e5", "-o", "houses.las")
     low = spillway.info(str(scene.work / "houses.las")).extent[0]
     scene.render("houses.las", "section.png", "--dim", 3, "--slice", f"z={low[2] + 1.2:.2f}", "--size", 640)
+
+
+def draw_haloes(scene):
+    """The density of clustered points in a box that repeats."""
+    scene.spillway("generate", "haloes", "-n", 50_000, "--dim", 2, "--seed", 4, "-o", "haloes.npy")
+    box = ("--periodic", "0,0,1,1", "--grid", "480,480")
+    scene.spillway("density", "haloes.npy", *box, "-o", "density.npy")
+    density = np.log10(np.load(scene.work / "density.npy")).T
+    low, high = np.percentile(density, (1, 99.7))
+    plt.imsave(scene.folder / "haloes.png", density, origin="lower", cmap="inferno", vmin=low, vmax=high)
 
 
 def draw_border(scene):

@@ -73,6 +73,28 @@ class RanksOfTheCommand : public ::testing::Test {
   Workspace work_;
 };
 
+TEST_F(RanksOfTheCommand, MakeTheSamePeriodicMeshAndItIsProved) {
+  work_.succeed("spillway generate -q uniform -n 3000 --dim 3 -o in.npy");
+  work_.succeed("spillway generate -q haloes -n 3000 --dim 2 -o haloes.npy");
+  for (const int count : {2, 3, 5}) {
+    for (const char* const arguments :
+         {"in.npy --dim 3 --periodic 0,0,0,1,1,1", "in.npy --dim 3 --periodic 0,0,-,1,1,-",
+          "haloes.npy --periodic 0,0,1,1", "haloes.npy --periodic=-,0,-,1"}) {
+      expect_same_mesh(count, arguments);
+      const std::string file = arguments;
+      work_.succeed("spillway check -q b.spm --points " + file.substr(0, file.find(' ')));
+    }
+  }
+}
+
+TEST_F(RanksOfTheCommand, RefuseTooFewPeriodicPoints) {
+  work_.succeed("spillway generate -q uniform -n 5 -o few.npy");
+  const auto result = work_.run(ranks(3, "triangulate few.npy --periodic 0,0,1,1 -o few.spm"));
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_THAT(result.err, HasSubstr("too few points for a triangulation of the periodic box"));
+  EXPECT_FALSE(work_.exists("few.spm"));
+}
+
 TEST_F(RanksOfTheCommand, SalvageAsOneProcessDoesAndNameTheFiles) {
   work_.succeed(
       "spillway generate -q terrain -n 200000 -o in.las\n"
