@@ -21,6 +21,7 @@ spillway_command_test(cli_tests cli
   tools/commands/cli_formats_test.cpp
   tools/commands/cli_height_test.cpp
   tools/commands/cli_info_check_test.cpp
+  tools/commands/cli_density_test.cpp
   tools/commands/cli_periodic_formats_test.cpp
   tools/commands/cli_shared_data_test.cpp
   tools/commands/cli_convert_copc_test.cpp tools/commands/cli_convert_laz_test.cpp

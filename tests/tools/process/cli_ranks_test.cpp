@@ -92,7 +92,7 @@ TEST_F(RanksOfTheCommand, RefuseTooFewPeriodicPoints) {
   const auto result = work_.run(ranks(3, "triangulate few.npy --periodic 0,0,1,1 -o few.spm"));
   EXPECT_NE(result.exit_code, 0);
   EXPECT_THAT(result.err, HasSubstr("too few points for a triangulation of the periodic box"));
-  EXPECT_FALSE(work_.exists("few.spm"));
+  EXPECT_FALSE(work_.has("few.spm"));
 }
 
 TEST_F(RanksOfTheCommand, SalvageAsOneProcessDoesAndNameTheFiles) {
