@@ -17,6 +17,10 @@ constexpr std::array<char, 3> kNames{'x', 'y', 'z'};
 /// 0.1 are no doubles.
 constexpr double kSameStep = 1e-6;
 
+/// Volumes and squares of periods are far from the ends of doubles.
+constexpr double kShortest = 1e-90;
+constexpr double kLongest = 1e90;
+
 /// The largest integer up to which all are doubles.
 constexpr double kExact = 9007199254740992.0;
 
@@ -74,9 +78,14 @@ void Torus::check(const PeriodicBox& box) const {
     any = true;
     const double low = box.box.low[k];
     const double high = box.box.high[k];
-    if (!std::isfinite(3 * low) || !std::isfinite(3 * high) || !(low < high)) {
+    if (!std::isfinite(low) || !std::isfinite(high) || !(low < high)) {
       throw InvalidArgument(fmt::format(
           "the periodic box has no length along {}: it goes from {} to {}", kNames[k], low, high));
+    }
+    if (!(high - low >= kShortest && high - low <= kLongest)) {
+      throw InvalidArgument(
+          fmt::format("the periodic box is {} long along {}: periods lie between {} and {}",
+                      high - low, kNames[k], kShortest, kLongest));
     }
   }
   if (!any) throw InvalidArgument("the periodic box has no periodic axis");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "src/error.h"
 #include "src/geometry/constructions/circumcentre.h"
@@ -27,25 +28,26 @@ Point<D> difference(const Point<D>& a, const Point<D>& b) {
   return difference;
 }
 
-/// The centre of the smallest sphere through the corners, seen from the first one.
+/// By how much a place near that point may be rounded, at most.
 template <int D>
-Point<D> centre_of_facet(const std::array<Point<D>, D>& corners) {
-  const Point<D> a = difference<D>(corners[1], corners[0]);
-  Point<D> centre;
-  if constexpr (D == 2) {
-    for (int k = 0; k < D; ++k) centre[k] = a[k] / 2;
-  } else {
-    // In its plane, as a sum of both edges.
-    const Point<D> b = difference<D>(corners[2], corners[0]);
-    const double aa = squared_length(a);
-    const double bb = squared_length(b);
-    const double ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    const double twice = 2 * (aa * bb - ab * ab);
-    const double of_a = bb * (aa - ab) / twice;
-    const double of_b = aa * (bb - ab) / twice;
-    for (int k = 0; k < D; ++k) centre[k] = of_a * a[k] + of_b * b[k];
+double rounding_of(const Point<D>& point) {
+  double most = 0;
+  for (const double x : point) most = std::max(most, std::abs(x));
+  return 4 * std::numeric_limits<double>::epsilon() * most;
+}
+
+/// Some points, seen from the first one along periodic axes and as they are along open ones: exact,
+/// and the same for all copies.
+template <int D, std::size_t Count>
+std::array<Point<D>, Count> seen_from_first(const Torus& torus,
+                                            const std::array<Point<D>, Count>& points) {
+  std::array<Point<D>, Count> seen = points;
+  for (Point<D>& point : seen) {
+    for (int k = 0; k < D; ++k) {
+      if (torus.periodic(k)) point[k] -= points[0][k];
+    }
   }
-  return centre;
+  return seen;
 }
 
 /// Adds to the periods of `lowest` those that `centre`, seen from it, lies beyond.
@@ -56,7 +58,8 @@ Periods<D> periods_of_centre(const Torus& torus, const Point<D>& lowest, const P
     if (!torus.periodic(k)) continue;
     const double inside = torus.moved(k, lowest[k], -periods[k]) - torus.low(k);
     const double beyond = std::floor((inside + centre[k]) / torus.period(k));
-    periods[k] = static_cast<std::int8_t>(periods[k] + std::clamp(beyond, -100.0, 100.0));
+    const double near = std::isfinite(beyond) ? std::clamp(beyond, -100.0, 100.0) : 100;
+    periods[k] = static_cast<std::int8_t>(periods[k] + near);
   }
   return periods;
 }
@@ -105,7 +108,7 @@ bool place_at_once(const Torus& torus, const std::array<Point<D>, D + 1>& corner
   constexpr double kUnsure = 0x1p-20;
   Point<D> centre;
   if (!plain_centre<D>(corners, centre)) return false;
-  place.radius = std::sqrt(squared_length(centre)) * kRoundedUp;
+  place.radius = std::sqrt(squared_length(centre)) * kRoundedUp + rounding_of<D>(corners[0]);
   if (!(place.radius <= torus.shortest_period())) return false;
   for (int k = 0; k < D; ++k) {
     place.centre[k] = corners[0][k] + centre[k];
@@ -126,18 +129,18 @@ template <int D>
 SimplexPlace<D> place_simplex(const Torus& torus, const std::array<Point<D>, D + 1>& corners) {
   SimplexPlace<D> place;
   if (place_at_once<D>(torus, corners, place)) return place;
-  // From differences in an order that all copies have, so that they agree to the last bit.
+  // In an order that all copies have, so that they agree to the last bit.
   std::array<Point<D>, D + 1> sorted = corners;
   std::sort(sorted.begin(), sorted.end());
-  std::array<Point<D>, D + 1> differences;
-  for (int i = 0; i <= D; ++i) differences[i] = difference<D>(sorted[i], sorted[0]);
-  Point<D> centre = circumcentre<D>(differences);
-  place.radius = std::sqrt(squared_length(centre)) * kRoundedUp;
-  if (!(place.radius <= kLargestRadius * torus.shortest_period())) {
-    centre = exact_circumcentre<D>(differences);
-  }
+  const std::array<Point<D>, D + 1> seen = seen_from_first<D>(torus, sorted);
+  Point<D> centre = circumcentre<D>(seen);
+  const double radius = std::sqrt(squared_length(difference<D>(centre, seen[0])));
+  if (!(radius <= kLargestRadius * torus.shortest_period())) centre = exact_circumcentre<D>(seen);
+  place.radius = radius * kRoundedUp + rounding_of<D>(corners[0]);
   place.periods = periods_of_centre<D>(torus, sorted[0], centre);
-  for (int k = 0; k < D; ++k) place.centre[k] = sorted[0][k] + centre[k];
+  for (int k = 0; k < D; ++k) {
+    place.centre[k] = torus.periodic(k) ? sorted[0][k] + centre[k] : centre[k];
+  }
   return place;
 }
 
@@ -167,7 +170,13 @@ bool is_chosen_hull_facet(const Torus& torus, const std::array<Point<D>, D>& fac
   if (!is_along_periods<D>(torus, facet)) return false;
   std::array<Point<D>, D> sorted = facet;
   std::sort(sorted.begin(), sorted.end());
-  const Point<D> centre = centre_of_facet<D>(sorted);
+  const std::array<Point<D>, D> seen = seen_from_first<D>(torus, sorted);
+  Point<D> centre;
+  if constexpr (D == 2) {
+    for (int k = 0; k < D; ++k) centre[k] = seen[1][k] / 2;  // of open axes nothing is asked
+  } else {
+    centre = exact_circle_centre(seen);
+  }
   return periods_of_centre<D>(torus, sorted[0], centre) == Periods<D>{};
 }
 

@@ -94,10 +94,12 @@ void DensityBlocks::take_vertices(const MeshStreamBlock& block) {
     Vertex vertex;
     vertex.point = block.vertices[v];
     vertex.mass = weight_.empty() ? 1 : masses[v];
-    if (!std::isfinite(vertex.mass)) {
-      throw Failure(
-          fmt::format("vertex {} has no mass: its {} is {}", announced_ + v, weight_, vertex.mass),
-          ErrorCode::kBadInput);
+    if (!(vertex.mass >= 0) || !std::isfinite(vertex.mass)) {
+      const WorldPoint place = in_world(header_.lattice, vertex.point);
+      throw Failure(fmt::format("the point at ({}, {}, {}) has the {} {}, which is no mass: masses "
+                                "are 0 or more",
+                                place[0], place[1], place[2], weight_, vertex.mass),
+                    ErrorCode::kBadInput);
     }
     if (header_.has_input_index) vertex.input_index = block.input_index[v];
     places_.push_back(enter(vertex));

@@ -47,7 +47,7 @@ void DensityGrid::write(MeshStreamBlock&& block) {
         if (periods != 0) corners[i].place[k] += periods * header_.periodic->period(k);
       }
     }
-    paint(corners);
+    paint_copies(corners);
   }
   std::vector<bool> is_final(own);
   for (const std::uint32_t v : block.finalized) {
@@ -61,6 +61,35 @@ void DensityGrid::write(MeshStreamBlock&& block) {
     if (!is_final[v]) live_.enter(announced_ + v, vertices[v]);
   }
   announced_ += own;
+}
+
+/// Those that meet the grid.
+void DensityGrid::paint_copies(std::array<Corner, 4>& corners) {
+  const std::size_t size = static_cast<std::size_t>(header_.dimension) + 1;
+  std::array<double, 3> first{};  // periods
+  std::array<double, 3> last{};
+  for (int k = 0; k < header_.dimension; ++k) {
+    if (!header_.periodic || !header_.periodic->periodic[k]) continue;
+    const double period = header_.periodic->period(k);
+    const auto along = [k](const Corner& a, const Corner& b) { return a.place[k] < b.place[k]; };
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.begin() + size, along);
+    first[k] = std::ceil((shape_.box.lo[k] - high->place[k]) / period);
+    last[k] = std::floor((shape_.box.hi[k] - low->place[k]) / period);
+  }
+  std::array<double, 3> periods{};
+  for (periods[0] = first[0]; periods[0] <= last[0]; ++periods[0]) {
+    for (periods[1] = first[1]; periods[1] <= last[1]; ++periods[1]) {
+      for (periods[2] = first[2]; periods[2] <= last[2]; ++periods[2]) {
+        std::array<Corner, 4> copy = corners;
+        for (std::size_t i = 0; i < size; ++i) {
+          for (int k = 0; k < header_.dimension; ++k) {
+            if (periods[k] != 0) copy[i].place[k] += periods[k] * header_.periodic->period(k);
+          }
+        }
+        paint(copy);
+      }
+    }
+  }
 }
 
 /// The value is that of the first corner and the shares of the edges to the others.
@@ -90,11 +119,12 @@ void DensityGrid::paint(const std::array<Corner, 4>& corners) {
   std::array<std::int64_t, 3> last{};
   for (int k = 0; k < dimension; ++k) {
     const double step = shape_.step(k);
-    first[k] = static_cast<std::int64_t>(std::ceil((low[k] - shape_.box.lo[k]) / step - 0.5));
-    last[k] = static_cast<std::int64_t>(std::floor((high[k] - shape_.box.lo[k]) / step - 0.5));
-    if (shape_.wraps[k]) continue;
-    first[k] = std::max<std::int64_t>(first[k], 0);
-    last[k] = std::min<std::int64_t>(last[k], std::int64_t{shape_.cells[k]} - 1);
+    const double cells = shape_.cells[static_cast<std::size_t>(k)];
+    const double from = std::ceil((low[k] - shape_.box.lo[k]) / step - 0.5);
+    const double to = std::floor((high[k] - shape_.box.lo[k]) / step - 0.5);
+    if (!(from < cells && to >= 0)) return;
+    first[k] = static_cast<std::int64_t>(std::max(from, 0.0));
+    last[k] = static_cast<std::int64_t>(std::min(to, cells - 1));
   }
   std::array<std::int64_t, 3> cell{};
   for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
@@ -114,19 +144,14 @@ void DensityGrid::paint(const std::array<Corner, 4>& corners) {
           rest -= share;
           value += share * (corners[n + 1].density - corners[0].density);
         }
-        if (inside && rest >= -kRounding) set(cell, value);
+        if (!inside || rest < -kRounding) continue;
+        values_[(static_cast<std::size_t>(cell[0]) * shape_.cells[1] +
+                 static_cast<std::size_t>(cell[1])) *
+                    shape_.cells[2] +
+                static_cast<std::size_t>(cell[2])] = value;
       }
     }
   }
-}
-
-void DensityGrid::set(const std::array<std::int64_t, 3>& cell, double value) {
-  std::size_t place = 0;
-  for (int k = 0; k < 3; ++k) {
-    const std::int64_t cells = shape_.cells[k];
-    place = place * shape_.cells[k] + static_cast<std::size_t>((cell[k] % cells + cells) % cells);
-  }
-  values_[place] = value;
 }
 
 }  // namespace spillway::stream

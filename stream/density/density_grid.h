@@ -15,7 +15,6 @@ namespace spillway::stream {
 struct GridShape {
   std::array<std::uint32_t, 3> cells{1, 1, 1};
   Box<3> box;
-  std::array<bool, 3> wraps{};  ///< by axis: the box is a period, and cells stand for their copies
 
   [[nodiscard]] std::size_t count() const { return std::size_t{cells[0]} * cells[1] * cells[2]; }
   [[nodiscard]] double step(int axis) const {
@@ -44,8 +43,8 @@ class DensityGrid final : public BlockSink {
     double density = 0;
   };
 
+  void paint_copies(std::array<Corner, 4>& corners);
   void paint(const std::array<Corner, 4>& corners);
-  void set(const std::array<std::int64_t, 3>& cell, double value);
 
   const MeshStreamHeader header_;
   const GridShape shape_;

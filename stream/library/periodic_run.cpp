@@ -59,7 +59,7 @@ class PeriodicRun {
         run_.sink.complete(run_.watch, *report);
         return std::move(*report);
       }
-      margin *= kWiden;
+      margin = wider(margin, torus_);
     }
   }
 
@@ -128,7 +128,14 @@ class PeriodicRun {
     TorusProof proof;
     RunSetup setup = run_.setup();
     setup.torus = &proof;
-    Report report = triangulate_to(blocks, setup, run_);
+    Report report;
+    try {
+      report = triangulate_to(blocks, setup, run_);
+    } catch (const Failure& error) {
+      if (error.code() != ErrorCode::kDegenerateInput) throw;
+      refuse_flat_copies(*domain_);
+      return std::nullopt;
+    }
     if (!is_proved(proof, *domain_, run_.context)) return std::nullopt;
     return report;
   }
@@ -168,6 +175,19 @@ MeshStart periodic_start(const Run& run, const Torus& torus, bool has_input_inde
       run.points.stream->lattice() ? run.engine.asked.periodic : std::optional(torus.box());
   start.header.extent.reset();
   return start;
+}
+
+void refuse_flat_copies(const PeriodicDomain& domain) {
+  if (!domain.widest()) return;
+  throw Failure(domain.torus().dimension() == 2
+                    ? "the points, with all of their copies, lie on one line"
+                    : "the points, with all of their copies, lie on one line or in one plane",
+                ErrorCode::kDegenerateInput);
+}
+
+double wider(double margin, const Torus& torus) {
+  constexpr double kTimes = 1.6;
+  return 2 * kTimes * margin < torus.shortest_period() ? kTimes * margin : kWidest;
 }
 
 bool is_proved(const TorusProof& proof, const PeriodicDomain& domain, const Context& context) {

@@ -17,8 +17,9 @@ void check_periodic(const TriangulateOptions& options, const EngineSink& sink);
 /// wider margin where that was too narrow.
 Report triangulate_periodically(Run& run);
 
-/// A margin that was too narrow is made so many times wider.
-inline constexpr double kWiden = 1.6;
+/// What comes after a margin that was too narrow: a wider one, and where that is half of a period
+/// the widest.
+double wider(double margin, const Torus& torus);
 
 /// The torus of a run, in the coordinates of its points.
 Torus torus_of(const RunPoints& points, const TriangulateOptions& options);
@@ -29,6 +30,10 @@ MeshStart periodic_start(const Run& run, const Torus& torus, bool has_input_inde
 /// Whether what was triangulated in the domain is the triangulation of the torus; if not, a wider
 /// margin is needed. Throws Failure (kDegenerateInput) for too few points.
 bool is_proved(const TorusProof& proof, const PeriodicDomain& domain, const Context& context);
+
+/// Points in a domain span fewer dimensions than it has. Throws Failure (kDegenerateInput) if more
+/// copies of them do, too.
+void refuse_flat_copies(const PeriodicDomain& domain);
 
 /// Ends the blocks of a periodic mesh, and puts its totals into the report.
 void end_blocks(PeriodicBlocks& blocks, Report& report);

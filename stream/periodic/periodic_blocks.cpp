@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kFinalizedAtATime = std::size_t{1} << 16;
 
 /// Bytes that a point takes which has copies, tables' free places included.
-constexpr std::uint64_t kSharedBytes = 32;
-constexpr std::uint64_t kCopyBytes = 48;
+constexpr std::uint64_t kSharedBytes = 72;
+constexpr std::uint64_t kCopyBytes = 96;
 constexpr std::uint64_t kLeaseStep = std::uint64_t{1} << 20;
 
 CornerOffset less(CornerOffset offset, CornerOffset first) {
@@ -103,10 +103,10 @@ void PeriodicBlocks::take_vertices(MeshStreamBlock& block, MeshStreamBlock& made
     const CornerOffset offset = wrap(point);
     map_[v].offset = offset;
     if (offset != kNoOffset || domain_.has_copies(point)) {
-      const SharedPoint* const shared = shared_.find({block.input_index[v], 0});
+      const SharedPoint* const shared = shared_.find({block.input_index[v]});
       const std::uint64_t vertex =
           shared != nullptr ? shared->vertex : vertices_ + made.vertices.size();
-      copies_.enter(engine_vertices_ + v, {vertex, offset});
+      copies_.enter(engine_vertices_ + v, {vertex, block.input_index[v], offset});
       if (shared != nullptr) {
         dropped_.push_back(engine_vertices_ + v);
         if (vertex >= vertices_) {
@@ -116,7 +116,7 @@ void PeriodicBlocks::take_vertices(MeshStreamBlock& block, MeshStreamBlock& made
         }
         continue;
       }
-      shared_.insert({block.input_index[v], vertex});
+      shared_.insert({block.input_index[v], vertex, copies_of(point)});
     }
     map_[v].number = static_cast<std::uint32_t>(made.vertices.size());
     made.vertices.push_back(point);
@@ -182,12 +182,31 @@ void PeriodicBlocks::take_corners(const MeshStreamBlock& block, MeshStreamBlock&
   std::copy(across.begin(), across.end(), next);
 }
 
-/// Others of their copies may come of those that have some.
+/// Whether all other copies of it are finalized.
+bool PeriodicBlocks::is_last(const Copy& copy) {
+  SharedPoint* const point = shared_.find({copy.index});
+  if (--point->left > 0) return false;
+  shared_.erase(point);
+  return true;
+}
+
+/// How many copies of a point of the box the engine has, itself among them.
+std::uint32_t PeriodicBlocks::copies_of(const LatticePoint& point) const {
+  int copies = 1;
+  for (int k = 0; k < domain_.torus().dimension(); ++k) {
+    copies *= domain_.copies_along(k, point[k]).count;
+  }
+  return static_cast<std::uint32_t>(copies);
+}
+
+/// A vertex with copies comes no more when the last of them does not.
 void PeriodicBlocks::take_finalized(const MeshStreamBlock& block, MeshStreamBlock& made) {
   for (const std::uint32_t v : block.finalized) {
     const std::size_t own = block.vertices.size();
     const std::uint64_t number = v < own ? engine_vertices_ + v : block.imported[v - own];
-    if (!copies_.forget(number)) made.finalized.push_back(map_[v].number);
+    const Copy* const copy = copies_.find(number);
+    if (copy == nullptr || is_last(*copy)) made.finalized.push_back(map_[v].number);
+    if (copy != nullptr) copies_.forget(number);
   }
 }
 

@@ -23,7 +23,7 @@ class PeriodicBlocks final : public BlockSink {
 
   void absorb(MeshStreamBlock& block) override;
   void write(MeshStreamBlock&& block) override;
-  /// Finalizes the vertices that have copies. Does not finish the sink.
+  /// Finalizes what is left. Does not finish the sink.
   void finish(const MeshTotals& totals) override;
 
   /// Of the periodic mesh so far.
@@ -33,6 +33,7 @@ class PeriodicBlocks final : public BlockSink {
   /// A vertex of the engine that is a copy, or has some.
   struct Copy {
     std::uint64_t vertex = 0;  ///< of the periodic mesh
+    std::uint64_t index = 0;   ///< of its point
     CornerOffset offset = kNoOffset;
   };
   /// A point that has copies, by its index in the input.
@@ -40,6 +41,7 @@ class PeriodicBlocks final : public BlockSink {
     static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
     std::uint64_t index = kEmpty;
     std::uint64_t vertex = 0;
+    std::uint32_t left = 0;  ///< copies, itself among them, that are not finalized
 
     [[nodiscard]] bool empty() const { return index == kEmpty; }
     [[nodiscard]] std::uint64_t scattered() const { return detail::scatter(index); }
@@ -59,6 +61,8 @@ class PeriodicBlocks final : public BlockSink {
   void take_imported(const MeshStreamBlock& block, MeshStreamBlock& made);
   void take_corners(const MeshStreamBlock& block, MeshStreamBlock& made);
   void take_finalized(const MeshStreamBlock& block, MeshStreamBlock& made);
+  bool is_last(const Copy& copy);
+  [[nodiscard]] std::uint32_t copies_of(const LatticePoint& point) const;
   [[nodiscard]] std::uint32_t import(std::uint64_t vertex, MeshStreamBlock& made);
   [[nodiscard]] std::uint64_t vertex_of(std::uint64_t engine_number) const;
   void lease();

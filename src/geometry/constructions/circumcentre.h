@@ -17,4 +17,8 @@ Point<D> circumcentre(const std::array<Point<D>, D + 1>& simplex);
 template <int D>
 Point<D> exact_circumcentre(const std::array<Point<D>, D + 1>& simplex);
 
+/// The centre of the circle through the corners of a triangle in space, likewise; infinite if they
+/// lie on one line.
+Point<3> exact_circle_centre(const std::array<Point<3>, 3>& triangle);
+
 }  // namespace spillway::geometry

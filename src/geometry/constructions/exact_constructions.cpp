@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "src/geometry/big_integer.h"
 #include "src/geometry/constructions/barycentric.h"
@@ -58,6 +59,30 @@ int distance_stages::exact(const Point<D>& place, const Point<D>& a, const Point
   const BigInt to_a = squared_length(difference<D>(scale, a, place));
   const BigInt to_b = squared_length(difference<D>(scale, b, place));
   return to_a > to_b ? 1 : to_a < to_b ? -1 : 0;
+}
+
+// In its plane, as a sum of two edges.
+Point<3> exact_circle_centre(const std::array<Point<3>, 3>& triangle) {
+  CommonScale scale;
+  for (const Point<3>& p : triangle) scale.include_point(p);
+  const BigVector<3> a = difference<3>(scale, triangle[1], triangle[0]);
+  const BigVector<3> b = difference<3>(scale, triangle[2], triangle[0]);
+  const BigInt aa = squared_length(a);
+  const BigInt bb = squared_length(b);
+  BigInt ab = 0;
+  for (int k = 0; k < 3; ++k) ab += a[k] * b[k];
+  const BigInt denominator = 2 * (aa * bb - ab * ab);
+  Point<3> centre;
+  centre.fill(std::numeric_limits<double>::infinity());
+  if (denominator == 0) return centre;
+  const BigInt of_a = bb * (aa - ab);
+  const BigInt of_b = aa * (bb - ab);
+  for (int k = 0; k < 3; ++k) {
+    const BigInt relative = of_a * a[k] + of_b * b[k];
+    const BigInt numerator = relative + scale.integer(triangle[0][k]) * denominator;
+    centre[k] = rounded_quotient(numerator, denominator, scale.exponent());
+  }
+  return centre;
 }
 
 // By Cramer's rule on 2 (p_i - p_0) . c = |p_i - p_0|^2.

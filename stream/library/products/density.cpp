@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -164,8 +165,20 @@ class DensityRaster final : public DensityOutput {
             fmt::format("the grid has no cells along {}: give a number for each axis", "xyz"[k]));
       }
     }
+    if (options_.grid_box) check(*options_.grid_box);
     grid_.reset();
     spool_.reset();
+    memory_ = {};
+    double bytes = sizeof(double);
+    for (int k = 0; k < header_.dimension; ++k) bytes *= options_.cells[k];
+    if (bytes > static_cast<double>(budget_.limit())) {
+      throw InvalidArgument(
+          fmt::format("a grid of {:.3g} cells takes more than a quarter of the memory, {}: choose "
+                      "fewer cells, or a larger limit",
+                      bytes / sizeof(double), memory_size_text(budget_.limit())),
+          {.remedy = Remedy::kMemory});
+    }
+    memory_ = MemoryLease(budget_, static_cast<std::uint64_t>(bytes), "the grid of densities");
     if (const std::optional<Box<3>> box = known_box()) return make_grid(*box);
     return spool_.emplace(header_, path_, *scratch_);
   }
@@ -192,6 +205,16 @@ class DensityRaster final : public DensityOutput {
   }
 
  private:
+  void check(const Extent& box) const {
+    for (int k = 0; k < header_.dimension; ++k) {
+      if (std::isfinite(box.high[k] - box.low[k]) && box.low[k] < box.high[k]) continue;
+      throw InvalidArgument(
+          fmt::format("the box of the grid has no length along {}: it goes from "
+                      "{} to {}",
+                      "xyz"[k], box.low[k], box.high[k]));
+    }
+  }
+
   [[nodiscard]] std::optional<Box<3>> known_box() const {
     if (options_.grid_box) return Box<3>{options_.grid_box->low, options_.grid_box->high};
     for (int k = 0; k < header_.dimension; ++k) {
@@ -218,9 +241,6 @@ class DensityRaster final : public DensityOutput {
       if (!(box.lo[k] < box.hi[k])) {
         throw InvalidArgument(fmt::format("the grid has no length along {}", "xyz"[k]));
       }
-      shape.wraps[k] = header_.periodic && header_.periodic->periodic[k] &&
-                       header_.periodic->box.low[k] == box.lo[k] &&
-                       header_.periodic->box.high[k] == box.hi[k];
     }
     const bool may_grow = !options_.grid_box && !header_.periodic;
     if (is_geotiff_ && may_grow) {
@@ -237,7 +257,6 @@ class DensityRaster final : public DensityOutput {
               step, shape.step(1)),
           {.file = path_});
     }
-    memory_ = MemoryLease(budget_, shape.count() * sizeof(double), "the grid of densities");
     return grid_.emplace(header_, shape);
   }
 

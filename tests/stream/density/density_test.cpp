@@ -202,6 +202,28 @@ TEST_P(Densities, AGridInAPeriodicBoxHasNoGapsAndTheMassOfThePoints) {
   EXPECT_NEAR(sum / static_cast<double>(grid.size()), mass, 0.1 * mass);
 }
 
+TEST_P(Densities, AGridBesideThePeriodicBoxHasThatOfTheCopies) {
+  const std::vector<Point<3>> points = random_points(800);
+  made(points, "box.npy", {.cells = cells(20)}, kUnitBox);
+  const std::vector<double> box = numbers("box.npy");
+  for (const double moved : {1.0, -3.0}) {
+    made(points, "moved.npy",
+         {.cells = cells(20),
+          .grid_box = Extent{{moved, moved, moved}, {moved + 1, moved + 1, moved + 1}}},
+         kUnitBox);
+    const std::vector<double> copies = numbers("moved.npy");
+    ASSERT_EQ(copies.size(), box.size());
+    for (std::size_t i = 0; i < box.size(); ++i) EXPECT_NEAR(copies[i], box[i], 1e-6 * box[i]);
+  }
+  made(points, "large.npy", {.cells = cells(12), .grid_box = Extent{{-1, -1, -1}, {2, 2, 2}}},
+       kUnitBox);
+  made(points, "small.npy",
+       {.cells = cells(9), .grid_box = Extent{{0.1, 0.1, 0.1}, {0.7, 0.7, 0.7}}}, kUnitBox);
+  for (const char* const name : {"large.npy", "small.npy"}) {
+    for (const double value : numbers(name)) EXPECT_FALSE(std::isnan(value));
+  }
+}
+
 TEST_P(Densities, AnOpenGridHasNanOutsideOfTheHull) {
   made(random_points(500), "grid.npy",
        {.cells = cells(10), .grid_box = Extent{{-1, -1, -1}, {2, 2, 2}}});
@@ -230,6 +252,11 @@ TEST_P(Densities, WhatCannotBeIsRefused) {
   EXPECT_THAT(refusal("density.npy", {.cells = {5, 0, 0}}), HasSubstr("no cells along y"));
   EXPECT_THAT(refusal("density.npy", {.grid_box = Extent{}}), HasSubstr("no effect"));
   EXPECT_THAT(refusal("density.obj", {}), HasSubstr("density"));
+  EXPECT_THAT(refusal("density.npy", {.cells = {1000000, 1000000, 1000000}}),
+              HasSubstr("choose fewer cells"));
+  EXPECT_THAT(
+      refusal("density.npy", {.cells = {5, 5, 5}, .grid_box = Extent{{0, 0, 0}, {1, 0, 1}}}),
+      HasSubstr("no length along y"));
   if (GetParam() == 3) {
     EXPECT_THAT(refusal("density.tif", {.cells = {5, 5, 5}}), HasSubstr("rasters of the plane"));
   }

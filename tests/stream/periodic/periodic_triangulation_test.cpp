@@ -223,6 +223,57 @@ TEST_P(Periodic, FewPointsOfASmallGridBetweenOpenSidesAreProved) {
   }
 }
 
+TEST_P(Periodic, CrystalsWithVacanciesBetweenOpenSidesAreProved) {
+  for (const double spacing : {4.05, 2.87, 0.1, 1.0 / 3}) {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      std::mt19937_64 random(seed);
+      std::vector<Point<3>> points = lattice(5, spacing, GetParam());
+      std::erase_if(points, [&](const Point<3>&) { return random() % 5 == 0; });
+      PeriodicBox box = cube(0, 5 * spacing);
+      box.periodic[seed % static_cast<std::uint64_t>(GetParam())] = false;
+      if (GetParam() == 3 && seed % 2 == 0) box.periodic[(seed + 1) % 3] = false;
+      proved(points, box);
+    }
+  }
+}
+
+TEST_P(Periodic, NearlyFlatFacetsOfAPrismAreProved) {
+  if (GetParam() == 2) GTEST_SKIP() << "there are prisms in space only";
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 300; ++i) {
+    std::vector<Point<3>> points(3 + random() % 4);
+    for (auto& point : points) {
+      for (double& x : point) x = static_cast<double>(random() % 20) * 0.1;
+    }
+    PeriodicBox box = cube(0, 2);
+    box.periodic = {i % 3 == 0, i % 3 == 1, i % 3 == 2};
+    const std::string text = refusal(points, box);
+    // Points in one plane along the axis are refused, and nothing else is.
+    if (text == "nothing") {
+      proved(points, box);
+    } else {
+      EXPECT_THAT(text, HasSubstr("lie on one line or in one plane"));
+    }
+  }
+}
+
+TEST_P(Periodic, SidesOfVeryDifferentLengthsEndSoon) {
+  PeriodicBox box = cube(0, 1);
+  box.box.high[1] = 1000;
+  EXPECT_THAT(refusal(random_points(300, box), box), HasSubstr("too few points"));
+  EXPECT_THAT(refusal(random_points(100, cube(0, 1)), cube(0, 1e-300)), HasSubstr("periods lie"));
+  EXPECT_THAT(refusal(random_points(100, cube(0, 1)), cube(-1e308, 1e308)),
+              HasSubstr("periods lie"));
+}
+
+TEST_P(Periodic, PointsOnOneLineAreTooFew) {
+  std::vector<Point<3>> points;
+  for (int i = 0; i < 300; ++i) points.push_back({i / 300.0, 0.5, 0.5});
+  EXPECT_THAT(refusal(points, cube(0, 1)), HasSubstr("too few points"));
+  EXPECT_THAT(refusal(std::vector<Point<3>>(500, Point<3>{0.5, 0.5, 0.5}), cube(0, 1)),
+              HasSubstr("too few points"));
+}
+
 TEST_P(Periodic, AMarginThatIsTooNarrowIsWidened) {
   // Most points lie far from the sides, and only some in the void there.
   const PeriodicBox box = cube(0, 1);
