@@ -15,6 +15,7 @@ void bind_mesh_origin(py::module_& module);
 void bind_products(py::module_& module);
 void bind_heights(py::module_& module);
 void bind_volumes(py::module_& module);
+void bind_densities(py::module_& module);
 void bind_points(py::module_& module);
 void bind_questions(py::module_& module);
 void bind_blocks(py::module_& module);

@@ -24,6 +24,7 @@ PYBIND11_MODULE(_spillway, module) {
   python::bind_products(module);
   python::bind_heights(module);
   python::bind_volumes(module);
+  python::bind_densities(module);
   python::bind_points(module);
   python::bind_questions(module);
   python::bind_blocks(module);

@@ -11,6 +11,7 @@ import os as _os
 from . import _spillway
 from ._blocks import Block, Blocks, blocks
 from ._delaunay import Delaunay
+from ._densities import density
 from ._files import check, convert, generate, info, read_points, triangulate
 from ._heights import height
 from ._products import Raster, contour, dem, render
@@ -18,6 +19,7 @@ from ._reports import (
     CheckReport,
     ContourReport,
     ConvertReport,
+    DensityReport,
     GenerateReport,
     HeightReport,
     MeshInfo,
@@ -37,6 +39,7 @@ __all__ = [
     "ContourReport",
     "ConvertReport",
     "Delaunay",
+    "DensityReport",
     "Error",
     "GenerateReport",
     "HeightReport",
@@ -53,6 +56,7 @@ __all__ = [
     "contour",
     "convert",
     "dem",
+    "density",
     "generate",
     "height",
     "info",

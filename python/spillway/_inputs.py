@@ -46,7 +46,9 @@ def as_inputs(inputs: Any, name: str = "inputs") -> list[bytes] | Floats:
     return as_rows(inputs, name)
 
 
-def as_dimension(dim: Any, inputs: list[bytes] | Floats, most: int = 6) -> int:
+def as_dimension(
+    dim: Any, inputs: list[bytes] | Floats, most: int = 6, name: str = "inputs"
+) -> int:
     """The dimension of a triangulation of these inputs."""
     if not is_dimension(dim, most):
         raise InvalidArgumentError(f"dim is {dim!r}; give 2 {'or' if most == 3 else 'to'} {most}")
@@ -54,7 +56,7 @@ def as_dimension(dim: Any, inputs: list[bytes] | Floats, most: int = 6) -> int:
         columns = inputs.shape[1]
         if dim != columns and (dim, columns) != (2, 3):
             raise InvalidArgumentError(
-                f"dim is {dim}, but inputs has {columns} columns; give {dim} coordinates a point"
+                f"dim is {dim}, but {name} has {columns} columns; give {dim} coordinates a point"
             )
     return int(dim)
 

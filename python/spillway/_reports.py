@@ -172,6 +172,23 @@ class VolumeReport(RunReport):
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
+class DensityReport(RunReport):
+    """The mass, which is the integral of the density, the volume of all simplices, an area in the
+    plane, the least and the most density at a vertex, and the run that triangulated the points."""
+
+    mass: float
+    volume: float
+    least: float
+    most: float
+
+    def _summary(self) -> str:
+        return (
+            f"mass {self.mass:.6g}, density from {self.least:.6g} to {self.most:.6g}; "
+            f"{_counts(self)}"
+        )
+
+
+@dataclasses.dataclass(frozen=True, repr=False)
 class ContourReport(RunReport):
     """How many lines there are, or polygons, of how many points, how many lines were left out for
     their length, the least and the greatest height of the terrain, and the run that made them. Of

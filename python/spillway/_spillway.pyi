@@ -1,4 +1,4 @@
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,6 +167,11 @@ class VolumeOptions:
     z_factor: float | None
     foreign_crs: bool
 
+class DensityOptions:
+    weight: str
+    cells: Sequence[int]
+    def set_grid_box(self, low: Sequence[float], high: Sequence[float]) -> None: ...
+
 class HeightOptions:
     replace_z: bool
     min_height: float | None
@@ -254,6 +259,9 @@ def volume_between(
     run: Run, first: MeshOrigin, second: MeshOrigin, how: VolumeOptions
 ) -> _Figures: ...
 def volume_above(run: Run, surface: MeshOrigin, level: float, how: VolumeOptions) -> _Figures: ...
+def density(
+    run: Run, points: MeshOrigin, path: bytes, options: DensityOptions
+) -> _Figures: ...
 def contours(run: Run, origin: MeshOrigin, output: bytes, options: ContourOptions) -> _Figures: ...
 def picture(run: Run, origin: MeshOrigin, output: bytes, options: PictureOptions) -> _Figures: ...
 def convert_points(

@@ -427,9 +427,10 @@ class Options(unittest.TestCase):
     def test_functions_have_the_options_of_the_command(self):
         # What a call of a program has besides, and what stands without dashes there.
         beside = set(
-            "inputs first second file mesh family output threads memory scratch_folder max_tmp progress".split()
+            "inputs points first second file mesh family output path threads memory scratch_folder "
+            "max_tmp progress".split()
         )
-        for name in "triangulate dem height volume contour render check convert info generate".split():
+        for name in "triangulate dem height volume density contour render check convert info generate".split():
             told = set(re.findall(r"--([a-z][a-z-]+)", command(name, "--help").split("Examples:")[0]))
             expected = {
                 option.removeprefix("no-").replace("-", "_")

@@ -13,7 +13,7 @@ from support import needed
 needed("mypy", "mypy")
 
 PROGRAM = """
-from typing import Iterator
+from typing import Any, Iterator
 import numpy as np
 from numpy.typing import NDArray
 import spillway
@@ -24,6 +24,8 @@ file: spillway.RasterReport = spillway.dem("a.las", "a.tif", resolution=1.0, cog
 points: NDArray[np.float64] = spillway.generate("uniform", 10)
 written: spillway.GenerateReport = spillway.generate("uniform", 10, "a.npy")
 blocks: Iterator[spillway.Block] = spillway.blocks(points, thin=(0.5, "lowest"))
+densities: NDArray[Any] = spillway.density(points, dim=3, periodic=1.0, grid=(4, 4, 4))
+mass: float = spillway.density("a.las", "a.vtu", weight="mass").mass
 report: spillway.RunReport = spillway.triangulate(["a.las"], "a.ply", progress=print)
 """
 

@@ -1,6 +1,6 @@
 # The Python module. A file whose tests need a package that is not there is skipped, and says so.
 if(SPILLWAY_PYTHON)
-  foreach(group arrays attributes blocks dimensions docs files heights install matplotlib mesh meshio million periodic pip process products questions scipy types volumes)
+  foreach(group arrays attributes blocks densities dimensions docs files heights install matplotlib mesh meshio million periodic pip process products questions scipy types volumes)
     add_test(NAME Python.${group} COMMAND Python::Interpreter -B -m unittest discover -v -p test_${group}.py
       WORKING_DIRECTORY ${CMAKE_CURRENT_LIST_DIR})
     set_tests_properties(Python.${group} PROPERTIES LABELS python TIMEOUT 120
