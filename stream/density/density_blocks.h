@@ -69,14 +69,14 @@ class DensityBlocks final : public BlockSink {
 
   void take_vertices(const MeshStreamBlock& block);
   void take_volumes(const MeshStreamBlock& block);
-  void let_go(std::uint32_t vertex, Made& made);
+  void let_go(std::uint32_t place, Made& made);
   void add_simplex(const std::array<std::uint32_t, 4>& vertices,
                    const std::array<CornerOffset, 4>& offsets, Made& made);
   void wait(const std::array<std::uint32_t, 4>& vertices,
             const std::array<CornerOffset, 4>& offsets);
-  void release_waiting(std::uint32_t vertex, Made& made);
-  void forget_if_done(std::uint32_t vertex, Made& made);
-  [[nodiscard]] std::uint32_t short_number(std::uint32_t vertex, Made& made) const;
+  void release_waiting(std::uint32_t place, Made& made);
+  void forget_if_done(std::uint32_t place, Made& made);
+  [[nodiscard]] std::uint32_t short_number(std::uint32_t place, Made& made) const;
   void pass_on(Made& made);
   [[nodiscard]] double volume_of(const std::array<std::uint32_t, 4>& vertices,
                                  const std::array<CornerOffset, 4>& offsets) const;

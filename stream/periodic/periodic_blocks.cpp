@@ -40,7 +40,7 @@ CornerOffset PeriodicBlocks::wrap(LatticePoint& point) const {
   const Torus& torus = domain_.torus();
   std::array<int, 3> periods{};
   for (int k = 0; k < torus.dimension(); ++k) {
-    periods[k] = torus.periods_along(k, point[k]);
+    periods[k] = int{torus.periods_along(k, point[k])};
     point[k] = torus.moved(k, point[k], -periods[k]);
   }
   return corner_offset(periods);
@@ -61,10 +61,9 @@ void PeriodicBlocks::absorb(MeshStreamBlock& block) {
   if (block.vertices.empty() || has_copies(block)) return;
   auto absorbed = std::make_shared<Absorbed>();
   absorbed->vertices = block.vertices.size();
-  absorbed->block = std::move(block);
+  absorbed->block = std::exchange(block, {});
   if (!input_index_) absorbed->block.input_index = {};
   sink_.absorb(absorbed->block);
-  block.clear();
   block.absorbed = std::move(absorbed);
 }
 
