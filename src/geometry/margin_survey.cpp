@@ -34,8 +34,7 @@ double margin_of_even_points(const Torus& torus, std::uint64_t points) {
   if (points < kEnough) return kUnknown;
   double volume = 1;
   for (int k = 0; k < torus.dimension(); ++k) volume *= torus.period(k);
-  const double spacing =
-      std::pow(volume / static_cast<double>(points), 1.0 / torus.dimension());
+  const double spacing = std::pow(volume / static_cast<double>(points), 1.0 / torus.dimension());
   return spacing * largest_radius(points, torus.dimension());
 }
 
@@ -46,6 +45,12 @@ MarginSurvey::MarginSurvey(const Torus& torus)
       counts_(dimension_ == 2 ? std::size_t(cells_) * cells_
                               : std::size_t(cells_) * cells_ * cells_) {
   for (int k = 0; k < dimension_; ++k) cells_per_unit_[k] = cells_ / torus_.period(k);
+}
+
+double wider_margin(double margin, const Torus& torus) {
+  constexpr double kTimes = 1.6;
+  const double wider = kTimes * margin;
+  return 2 * wider < torus.shortest_period() ? wider : std::numeric_limits<double>::infinity();
 }
 
 double MarginSurvey::margin() const {

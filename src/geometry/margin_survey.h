@@ -14,6 +14,10 @@ namespace spillway::geometry {
 /// The margin for points of a closed torus that lie evenly, or infinite for too few.
 double margin_of_even_points(const Torus& torus, std::uint64_t points);
 
+/// What comes after a margin that was too narrow: a wider one, and from half of the shortest period
+/// on the widest there is.
+double wider_margin(double margin, const Torus& torus);
+
 /// Counts points by the cells of a grid over a closed torus, to guess how wide a margin of copies
 /// the circumspheres near its sides need. Another guess costs time, never the result.
 class MarginSurvey {

@@ -23,9 +23,6 @@ constexpr double kWidest = std::numeric_limits<double>::infinity();
 /// A cell that meets the box lies within twice the radius of its circumsphere around it.
 constexpr double kRadii = 2;
 
-/// A margin that was too narrow is made so many times wider.
-constexpr double kWiden = 1.6;
-
 template <int D, class Index>
 class PeriodicConstruction {
  public:
@@ -52,7 +49,7 @@ class PeriodicConstruction {
       if (is_last_word && torus_.closed()) refuse_long_simplices(torus_, made.reach);
       if (made.proven) return finish(std::move(made));
       if (!domain.widest()) {
-        margin *= kWiden;
+        margin = wider_margin(margin, torus_);
       } else if (extra_.empty() && !made.missing.empty()) {
         // Cells between open sides may be longer than half a period, and reach as far on the other
         // side. With their corners these copies of them are Delaunay cells of the copies, too.

@@ -5,6 +5,7 @@
 
 #include "src/error.h"
 #include "src/geometry/canonical_hash.h"
+#include "src/geometry/determinants.h"
 #include "src/geometry/dimensions.h"
 #include "src/geometry/predicates.h"
 #include "stream/checker/mesh_proof.h"
@@ -13,28 +14,14 @@ namespace spillway::checker {
 
 namespace {
 
-/// Rounded.
+/// Times D!, rounded.
 template <int D>
 double volume_of(const std::array<Point<D>, D + 1>& corners) {
-  std::array<Point<D>, D> edges;
+  Vectors<D, D, double> edges;
   for (int i = 0; i < D; ++i) {
     for (int k = 0; k < D; ++k) edges[i][k] = corners[i + 1][k] - corners[0][k];
   }
-  double volume = 1;
-  for (int column = 0; column < D; ++column) {
-    int pivot = column;
-    for (int i = column + 1; i < D; ++i) {
-      if (std::abs(edges[i][column]) > std::abs(edges[pivot][column])) pivot = i;
-    }
-    if (edges[pivot][column] == 0) return 0;
-    std::swap(edges[pivot], edges[column]);
-    volume *= edges[column][column] / (column + 1);
-    for (int i = column + 1; i < D; ++i) {
-      const double factor = edges[i][column] / edges[column][column];
-      for (int k = column; k < D; ++k) edges[i][k] -= factor * edges[column][k];
-    }
-  }
-  return std::abs(volume);
+  return std::abs(orientation_determinant<D>(edges));
 }
 
 }  // namespace

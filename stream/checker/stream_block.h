@@ -76,7 +76,7 @@ class StreamBlock {
   std::uint64_t not_delaunay = 0;    ///< of these
   std::uint64_t not_positive = 0;    ///< simplices
   std::uint64_t canonical_hash = 0;  ///< of the block's simplices
-  double volume = 0;                 ///< of a periodic mesh: of the block's simplices, rounded
+  double volume = 0;                 ///< of a periodic mesh: of the block's simplices, times D!, rounded
   CheckReport found;                 ///< only its faults
 
   /// Hashes the simplices and matches their facets. To prove them is to test their orientation and

@@ -373,7 +373,7 @@ class StreamProof {
       const TorusBoundary boundary = torus_boundary<D>(*coordinates_.torus(), low_, high_, facets);
       if (!boundary.fault.empty()) return faults_.add("{}", boundary.fault);
       constexpr double kRounding = 1e-3;
-      const double times = volume_ / boundary.volume;
+      const double times = volume_ / ((D == 2 ? 2 : 6) * boundary.volume);
       if (!(std::abs(times - 1) <= kRounding)) {
         return faults_.add("the {} cover the periodic box {:.6g} times", Words<D>::kSimplices,
                            times);
@@ -461,7 +461,7 @@ class StreamProof {
   std::uint64_t not_positive_ = 0;       // simplices
   std::uint64_t unused_ = 0;             // vertices
   std::uint64_t outside_ = 0;            // of the periodic box, or inexact: vertices
-  double volume_ = 0;                    // of a periodic mesh, rounded
+  double volume_ = 0;                    // of a periodic mesh, times D!, rounded
   Point<D> low_{};                       // of the vertices of a periodic mesh
   Point<D> high_{};
   std::uint64_t last_twin_ = ~std::uint64_t{0};  // the last simplex reported as one

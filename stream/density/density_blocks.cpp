@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "src/error.h"
+#include "src/geometry/determinants.h"
 #include "stream/library/points/attribute_records.h"
 
 namespace spillway::stream {
@@ -39,41 +41,28 @@ void DensityBlocks::write(MeshStreamBlock&& block) {
   take_vertices(block);
   take_volumes(block);
   Made made;
-  const std::size_t own = block.vertices.size();
   // First all that leave, so that simplices between them need not wait.
   std::vector<std::uint32_t> leaving;
   leaving.reserve(block.finalized.size());
   for (const std::uint32_t v : block.finalized) {
     leaving.push_back(places_[v]);
-    if (v >= own) live_.forget(block.imported[v - own]);
     let_go(places_[v], made);
   }
-  std::vector<bool> is_final(own);
-  for (const std::uint32_t v : block.finalized) {
-    if (v < own) is_final[v] = true;
-  }
-  for (std::uint32_t v = 0; v < own; ++v) {
-    if (!is_final[v]) live_.enter(announced_ + v, places_[v]);
-  }
-  const std::size_t first_across = block.corners.size() - block.offsets.size();
-  for (std::size_t c = 0; c < block.corners.size(); c += corners_) {
-    std::array<std::uint32_t, 4> vertices{};
-    std::array<CornerOffset, 4> offsets{};
+  for_each_simplex(block, header_.dimension, [&](SimplexCorners corners, const auto& offsets) {
     bool all_left = true;
     for (std::size_t i = 0; i < corners_; ++i) {
-      vertices[i] = places_[block.corners[c + i]];
-      if (c >= first_across) offsets[i] = block.offsets[c + i - first_across];
-      all_left &= vertices_[vertices[i]].has_left;
+      corners[i] = places_[corners[i]];
+      all_left &= vertices_[corners[i]].has_left;
     }
     if (all_left) {
-      add_simplex(vertices, offsets, made);
+      add_simplex(corners, offsets, made);
     } else {
-      wait(vertices, offsets);
+      wait(corners, offsets);
     }
-  }
+  });
   for (const std::uint32_t vertex : leaving) release_waiting(vertex, made);
   for (const std::uint32_t vertex : leaving) forget_if_done(vertex, made);
-  announced_ += own;
+  live_.settle(block, places_);
   pass_on(made);
   const std::uint64_t bytes =
       vertices_.capacity() * (sizeof(Vertex) + 24) + waiting_.capacity() * sizeof(Waiting);
@@ -105,7 +94,7 @@ void DensityBlocks::take_vertices(const MeshStreamBlock& block) {
     places_.push_back(enter(vertex));
     extent_.expand(in_world(header_.lattice, vertex.point).numbers());
   }
-  for (const std::uint64_t number : block.imported) places_.push_back(live_.at(number));
+  live_.append_imported(block, places_);
 }
 
 std::uint32_t DensityBlocks::enter(const Vertex& vertex) {
@@ -120,44 +109,30 @@ std::uint32_t DensityBlocks::enter(const Vertex& vertex) {
 }
 
 void DensityBlocks::take_volumes(const MeshStreamBlock& block) {
-  const std::size_t first_across = block.corners.size() - block.offsets.size();
-  for (std::size_t c = 0; c < block.corners.size(); c += corners_) {
-    std::array<std::uint32_t, 4> vertices{};
-    std::array<CornerOffset, 4> offsets{};
-    for (std::size_t i = 0; i < corners_; ++i) {
-      vertices[i] = places_[block.corners[c + i]];
-      if (c >= first_across) offsets[i] = block.offsets[c + i - first_across];
-    }
-    const double volume = volume_of(vertices, offsets);
+  for_each_simplex(block, header_.dimension, [&](SimplexCorners corners, const auto& offsets) {
+    for (std::size_t i = 0; i < corners_; ++i) corners[i] = places_[corners[i]];
+    const double volume = volume_of(corners, offsets);
     totals_.volume += volume;
-    for (std::size_t i = 0; i < corners_; ++i) vertices_[vertices[i]].volume += volume;
-  }
+    for (std::size_t i = 0; i < corners_; ++i) vertices_[corners[i]].volume += volume;
+  });
 }
 
-WorldPoint DensityBlocks::place_of(std::uint32_t vertex, CornerOffset offset) const {
-  WorldPoint place = in_world(header_.lattice, vertices_[vertex].point);
-  if (offset == kNoOffset) return place;
-  for (int k = 0; k < header_.dimension; ++k) {
-    const int periods = periods_along(offset, k);
-    if (periods != 0) place[k] += periods * header_.periodic->period(k);
+double DensityBlocks::volume_of(const SimplexCorners& vertices,
+                                const SimplexOffsets& offsets) const {
+  std::array<WorldPoint, 4> places;
+  for (std::size_t i = 0; i < corners_; ++i) {
+    const WorldPoint vertex = in_world(header_.lattice, vertices_[vertices[i]].point);
+    places[i] = place_of_copy(header_, vertex, offsets[i]);
   }
-  return place;
-}
-
-double DensityBlocks::volume_of(const std::array<std::uint32_t, 4>& vertices,
-                                const std::array<CornerOffset, 4>& offsets) const {
-  std::array<std::array<double, 3>, 3> edges{};
-  const WorldPoint first = place_of(vertices[0], offsets[0]);
-  for (std::size_t i = 1; i < corners_; ++i) {
-    const WorldPoint corner = place_of(vertices[i], offsets[i]);
-    for (int k = 0; k < 3; ++k) edges[i - 1][k] = corner[k] - first[k];
-  }
-  const auto& [a, b, c] = edges;
-  const double xy = a[0] * b[1] - a[1] * b[0];
-  if (corners_ == 3) return std::abs(xy) / 2;
-  const double yz = a[1] * b[2] - a[2] * b[1];
-  const double zx = a[2] * b[0] - a[0] * b[2];
-  return std::abs(c[0] * yz + c[1] * zx + c[2] * xy) / 6;
+  const auto times_volume = [&places](auto d) {
+    Vectors<d, d, double> edges;
+    for (int i = 0; i < d; ++i) {
+      for (int k = 0; k < d; ++k) edges[i][k] = places[i + 1][k] - places[0][k];
+    }
+    return std::abs(orientation_determinant<d>(edges));
+  };
+  return header_.dimension == 2 ? times_volume(std::integral_constant<int, 2>()) / 2
+                                : times_volume(std::integral_constant<int, 3>()) / 6;
 }
 
 /// Adds a vertex whose simplices have all come to the new mesh.
@@ -178,8 +153,7 @@ void DensityBlocks::let_go(std::uint32_t place, Made& made) {
   totals_.most = std::max(totals_.most, density);
 }
 
-void DensityBlocks::wait(const std::array<std::uint32_t, 4>& vertices,
-                         const std::array<CornerOffset, 4>& offsets) {
+void DensityBlocks::wait(const SimplexCorners& vertices, const SimplexOffsets& offsets) {
   Waiting simplex{vertices, offsets, {kNone, kNone, kNone, kNone}, 0};
   std::uint32_t place = static_cast<std::uint32_t>(waiting_.size());
   if (free_waiting_.empty()) {
@@ -237,8 +211,8 @@ std::uint32_t DensityBlocks::short_number(std::uint32_t place, Made& made) const
   return imported;
 }
 
-void DensityBlocks::add_simplex(const std::array<std::uint32_t, 4>& vertices,
-                                const std::array<CornerOffset, 4>& offsets, Made& made) {
+void DensityBlocks::add_simplex(const SimplexCorners& vertices, const SimplexOffsets& offsets,
+                                Made& made) {
   const bool is_across = std::any_of(offsets.begin(), offsets.end(),
                                      [](CornerOffset offset) { return offset != kNoOffset; });
   std::vector<std::uint32_t>& corners = is_across ? made.across : made.block.corners;

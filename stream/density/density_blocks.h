@@ -10,8 +10,10 @@
 #include <spillway/density.h>
 #include <spillway/live_vertices.h>
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/box.h"
 #include "src/runtime/memory_budget.h"
+#include "stream/density/placed_simplices.h"
 
 namespace spillway::stream {
 
@@ -55,8 +57,8 @@ class DensityBlocks final : public BlockSink {
   };
   /// A simplex that waits.
   struct Waiting {
-    std::array<std::uint32_t, 4> vertices;  ///< places in vertices_
-    std::array<CornerOffset, 4> offsets;
+    SimplexCorners vertices;  ///< places in vertices_
+    SimplexOffsets offsets;
     std::array<std::uint32_t, 4> links;  ///< by corner: the next of its vertex
     int missing = 0;                     ///< corners that have not left
   };
@@ -70,17 +72,14 @@ class DensityBlocks final : public BlockSink {
   void take_vertices(const MeshStreamBlock& block);
   void take_volumes(const MeshStreamBlock& block);
   void let_go(std::uint32_t place, Made& made);
-  void add_simplex(const std::array<std::uint32_t, 4>& vertices,
-                   const std::array<CornerOffset, 4>& offsets, Made& made);
-  void wait(const std::array<std::uint32_t, 4>& vertices,
-            const std::array<CornerOffset, 4>& offsets);
+  void add_simplex(const SimplexCorners& vertices, const SimplexOffsets& offsets, Made& made);
+  void wait(const SimplexCorners& vertices, const SimplexOffsets& offsets);
   void release_waiting(std::uint32_t place, Made& made);
   void forget_if_done(std::uint32_t place, Made& made);
   [[nodiscard]] std::uint32_t short_number(std::uint32_t place, Made& made) const;
   void pass_on(Made& made);
-  [[nodiscard]] double volume_of(const std::array<std::uint32_t, 4>& vertices,
-                                 const std::array<CornerOffset, 4>& offsets) const;
-  [[nodiscard]] WorldPoint place_of(std::uint32_t vertex, CornerOffset offset) const;
+  [[nodiscard]] double volume_of(const SimplexCorners& vertices,
+                                 const SimplexOffsets& offsets) const;
   std::uint32_t enter(const Vertex& vertex);
 
   BlockSink& sink_;
@@ -89,14 +88,13 @@ class DensityBlocks final : public BlockSink {
   const std::size_t corners_;  ///< of a simplex
   ShrinkingLease memory_;
   std::uint64_t leased_ = 0;
-  std::uint64_t announced_ = 0;  ///< vertices that have come
-  std::uint64_t left_ = 0;       ///< and those that have left
+  std::uint64_t left_ = 0;  ///< and those that have left
   std::vector<Vertex> vertices_;
   std::vector<std::uint32_t> free_vertices_;
   std::vector<Waiting> waiting_;
   std::vector<std::uint32_t> free_waiting_;
-  LiveVertices<std::uint32_t> live_;   ///< by number: the place in vertices_
-  std::vector<std::uint32_t> places_;  ///< of the block that is written, by short number
+  StreamVertices<std::uint32_t> live_;  ///< by number: the place in vertices_
+  std::vector<std::uint32_t> places_;   ///< of the block that is written, by short number
   DensityTotals totals_;
   Box<3> extent_;
 };

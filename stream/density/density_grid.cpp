@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "stream/density/placed_simplices.h"
+
 namespace spillway::stream {
 namespace {
 
@@ -33,38 +35,20 @@ void DensityGrid::write(MeshStreamBlock&& block) {
     vertices[v].place = in_world(header_.lattice, block.vertices[v]);
     std::memcpy(&vertices[v].density, &block.attributes[v * sizeof(double)], sizeof(double));
   }
-  for (const std::uint64_t number : block.imported) vertices.push_back(live_.at(number));
-  const std::size_t size = static_cast<std::size_t>(header_.dimension) + 1;
-  const std::size_t first_across = block.corners.size() - block.offsets.size();
-  for (std::size_t c = 0; c < block.corners.size(); c += size) {
+  live_.append_imported(block, vertices);
+  for_each_simplex(block, header_.dimension, [&](const auto& numbers, const auto& offsets) {
     std::array<Corner, 4> corners;
-    for (std::size_t i = 0; i < size; ++i) {
-      corners[i] = vertices[block.corners[c + i]];
-      if (c < first_across) continue;
-      const CornerOffset offset = block.offsets[c + i - first_across];
-      for (int k = 0; k < header_.dimension; ++k) {
-        const int periods = periods_along(offset, k);
-        if (periods != 0) corners[i].place[k] += periods * header_.periodic->period(k);
-      }
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(header_.dimension); ++i) {
+      corners[i] = vertices[numbers[i]];
+      corners[i].place = place_of_copy(header_, corners[i].place, offsets[i]);
     }
     paint_copies(corners);
-  }
-  std::vector<bool> is_final(own);
-  for (const std::uint32_t v : block.finalized) {
-    if (v < own) {
-      is_final[v] = true;
-    } else {
-      live_.forget(block.imported[v - own]);
-    }
-  }
-  for (std::size_t v = 0; v < own; ++v) {
-    if (!is_final[v]) live_.enter(announced_ + v, vertices[v]);
-  }
-  announced_ += own;
+  });
+  live_.settle(block, vertices);
 }
 
 /// Those that meet the grid.
-void DensityGrid::paint_copies(std::array<Corner, 4>& corners) {
+void DensityGrid::paint_copies(const std::array<Corner, 4>& corners) {
   const std::size_t size = static_cast<std::size_t>(header_.dimension) + 1;
   std::array<double, 3> first{};  // periods
   std::array<double, 3> last{};

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <spillway/live_vertices.h>
 #include "formats/meshes/common/mesh_stream.h"
+#include "formats/meshes/common/stream_vertices.h"
 #include "src/geometry/box.h"
 
 namespace spillway::stream {
@@ -43,14 +43,13 @@ class DensityGrid final : public BlockSink {
     double density = 0;
   };
 
-  void paint_copies(std::array<Corner, 4>& corners);
+  void paint_copies(const std::array<Corner, 4>& corners);
   void paint(const std::array<Corner, 4>& corners);
 
   const MeshStreamHeader header_;
   const GridShape shape_;
   std::vector<double> values_;
-  std::uint64_t announced_ = 0;
-  LiveVertices<Corner> live_;
+  StreamVertices<Corner> live_;
 };
 
 }  // namespace spillway::stream

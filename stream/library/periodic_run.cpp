@@ -59,7 +59,7 @@ class PeriodicRun {
         run_.sink.complete(run_.watch, *report);
         return std::move(*report);
       }
-      margin = wider(margin, torus_);
+      margin = wider_margin(margin, torus_);
     }
   }
 
@@ -183,11 +183,6 @@ void refuse_flat_copies(const PeriodicDomain& domain) {
                     ? "the points, with all of their copies, lie on one line"
                     : "the points, with all of their copies, lie on one line or in one plane",
                 ErrorCode::kDegenerateInput);
-}
-
-double wider(double margin, const Torus& torus) {
-  constexpr double kTimes = 1.6;
-  return 2 * kTimes * margin < torus.shortest_period() ? kTimes * margin : kWidest;
 }
 
 bool is_proved(const TorusProof& proof, const PeriodicDomain& domain, const Context& context) {

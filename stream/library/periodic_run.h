@@ -17,10 +17,6 @@ void check_periodic(const TriangulateOptions& options, const EngineSink& sink);
 /// wider margin where that was too narrow.
 Report triangulate_periodically(Run& run);
 
-/// What comes after a margin that was too narrow: a wider one, and where that is half of a period
-/// the widest.
-double wider(double margin, const Torus& torus);
-
 /// The torus of a run, in the coordinates of its points.
 Torus torus_of(const RunPoints& points, const TriangulateOptions& options);
 

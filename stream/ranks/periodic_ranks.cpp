@@ -56,7 +56,7 @@ class PeriodicRanks {
     double margin = torus_.closed() ? margin_of_even_points(torus_, points)
                                     : std::numeric_limits<double>::infinity();
     source_.repeat_in(copies_);
-    for (;; margin = wider(margin, torus_)) {
+    for (;; margin = wider_margin(margin, torus_)) {
       domain_.emplace(torus_, margin);
       copies_.begin(*domain_);
       run_.engine.periodic = domain_;

@@ -103,9 +103,10 @@ class Settlement {
     return Choice::kInside;
   }
 
-  /// The same where nothing is left out, or copies only, without a look at most simplices. A vertex without kept
-  /// ones has final ones. Of a vertex with kept ones, a final one is the neighbour of a kept one,
-  /// as its finite simplices are connected, and each of its infinite ones is beside a finite one.
+  /// The same where nothing is left out, or copies only, without a look at most simplices. A vertex
+  /// without kept ones has final ones. Of a vertex with kept ones, a final one is the neighbour of a
+  /// kept one, as its finite simplices are connected, and each of its infinite ones is beside a
+  /// finite one.
   void mark_uses_from_border() {
     std::fill(use_.begin(), use_.end(), kByFinal | kByEmitted);
     for (const DroppedDuplicate& duplicate : part_.duplicates) {

@@ -227,6 +227,22 @@ TYPED_TEST(PeriodicMeshInMemory, TooFewPointsAreRefusedWithTheLengthOfACell) {
   EXPECT_EQ(code_of<D>({}, square_box<D>(0, 3), text), ErrorCode::kDegenerateInput);
 }
 
+TYPED_TEST(PeriodicMeshInMemory, PointsOnOneLineAndVeryUnequalSidesAreTooFew) {
+  constexpr int D = TypeParam::value;
+  Points<D> line(400);
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    line[i].fill(1.5);
+    line[i][0] = 3 * static_cast<double>(i) / static_cast<double>(line.size());
+  }
+  std::string text;
+  EXPECT_EQ(code_of<D>(line, square_box<D>(0, 3), text), ErrorCode::kDegenerateInput);
+  EXPECT_TRUE(text.starts_with("too few points for a triangulation of the periodic box")) << text;
+  PeriodicBox box = square_box<D>(0, 3);
+  box.box.high[1] = 30'000;
+  EXPECT_EQ(code_of<D>(random_points<D>(300, 1), box, text), ErrorCode::kDegenerateInput);
+  EXPECT_TRUE(text.starts_with("too few points for a triangulation of the periodic box")) << text;
+}
+
 TYPED_TEST(PeriodicMeshInMemory, BoxesThatAreNoneAreRefused) {
   constexpr int D = TypeParam::value;
   const Points<D> points = random_points<D>(50, 1);
