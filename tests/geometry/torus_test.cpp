@@ -127,7 +127,9 @@ void expect_one_of_all_copies_chosen() {
     }
     // Spheres of flat ones may have their centres farther away than these copies go.
     EXPECT_LE(chosen, 1);
-    if (place_simplex<D>(torus, corners).radius < 1) EXPECT_EQ(chosen, 1);
+    if (place_simplex<D>(torus, corners).radius < 1) {
+      EXPECT_EQ(chosen, 1);
+    }
   }
 }
 
