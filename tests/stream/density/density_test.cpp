@@ -272,8 +272,9 @@ TEST_P(Densities, HaloesAreDenserThanWhatLiesBetween) {
   EXPECT_GT(sink->totals().most, 1000 * sink->totals().least);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, Densities, ::testing::Values(2, 3),
-                         [](const auto& info) { return std::to_string(info.param) + "D"; });
+INSTANTIATE_TEST_SUITE_P(Dimensions, Densities, ::testing::Values(2, 3), [](const auto& dimension) {
+  return std::to_string(dimension.param) + "D";
+});
 
 }  // namespace
 }  // namespace spillway

@@ -125,7 +125,9 @@ TEST_P(Periodic, RandomPointsAreProvedAndPlanesHaveTwoTrianglesAVertex) {
   const Report report = proved(random_points(3000, box), box);
   EXPECT_EQ(report.mesh.vertices, 3000U);
   EXPECT_EQ(report.mesh.hull_facets, 0U);
-  if (GetParam() == 2) EXPECT_EQ(report.mesh.simplices, 6000U);
+  if (GetParam() == 2) {
+    EXPECT_EQ(report.mesh.simplices, 6000U);
+  }
 }
 
 TEST_P(Periodic, TheResultDoesNotDependOnHowTheWorkIsDivided) {
@@ -318,7 +320,9 @@ TEST_P(Periodic, ASinkOfTheProgramGetsOffsetsOfAllCorners) {
         const double from = mesh.vertices()[mesh.corners()[c]][k];
         const double to = mesh.vertices()[mesh.corners()[c + i]][k] + offset;
         EXPECT_LT(std::abs(to - from), 0.5);
-        if (i == 0) EXPECT_EQ(offset, 0);
+        if (i == 0) {
+          EXPECT_EQ(offset, 0);
+        }
         across += offset != 0 ? 1 : 0;
       }
     }
@@ -401,8 +405,9 @@ TEST_P(Periodic, FilesAreReadTwiceAndLatticesStayWhatTheyAre) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Dimensions, Periodic, ::testing::Values(2, 3),
-                         [](const auto& info) { return std::to_string(info.param) + "D"; });
+INSTANTIATE_TEST_SUITE_P(Dimensions, Periodic, ::testing::Values(2, 3), [](const auto& dimension) {
+  return std::to_string(dimension.param) + "D";
+});
 
 }  // namespace
 }  // namespace spillway
