@@ -17,9 +17,12 @@ int run_program(int argc, char** argv, std::span<const AddSubcommand> table) {
     handle_interrupts();
     const int exit_code = run_command(argc, argv, table);
     leave_ranks();
+    tell_of_temporary_paths_left();
     return exit_code;
   } catch (...) {
-    return report_failure(std::current_exception());
+    const int exit_code = report_failure(std::current_exception());
+    tell_of_temporary_paths_left();
+    return exit_code;
   }
 }
 

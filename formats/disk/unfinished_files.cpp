@@ -53,6 +53,7 @@ struct Registry {
   bool ending = false;                         // guarded by mutex, as is what follows
   std::map<std::string, std::string> files;    // by path
   std::map<std::string, std::string> folders;  // by path
+  std::vector<std::string> stuck;              // what could not be removed
 };
 
 Registry& registry() {
@@ -118,12 +119,13 @@ namespace {
 std::size_t remove_content(const fs::path& folder);
 
 /// Removes a folder with all that is in it, while others may add and remove files. Gives up on what
-/// cannot be removed: that is left to whoever cleans the parent.
-void remove_folder(const fs::path& folder) {
+/// cannot be removed; returns whether nothing is left.
+bool remove_folder(const fs::path& folder) {
   constexpr int kMostFruitless = 20;
   constexpr std::chrono::milliseconds kPause{5};
   for (int fruitless = 0; fruitless < kMostFruitless;) {
-    if (::rmdir(folder.c_str()) == 0 || (errno != ENOTEMPTY && errno != EEXIST)) return;
+    if (::rmdir(folder.c_str()) == 0 || errno == ENOENT) return true;
+    if (errno != ENOTEMPTY && errno != EEXIST) return false;
     if (remove_content(folder) > 0) {
       fruitless = 0;
     } else {
@@ -131,6 +133,7 @@ void remove_folder(const fs::path& folder) {
       std::this_thread::sleep_for(kPause);
     }
   }
+  return false;
 }
 
 std::size_t remove_content(const fs::path& folder) {
@@ -142,11 +145,20 @@ std::size_t remove_content(const fs::path& folder) {
     if (::unlink(path.c_str()) == 0) {
       ++removed;
     } else if (errno == EISDIR || errno == EPERM) {
-      remove_folder(path);
-      if (std::error_code ignored; !fs::exists(fs::symlink_status(path, ignored))) ++removed;
+      if (remove_folder(path)) ++removed;
     }
   }
   return removed;
+}
+
+/// Removes a folder that was registered, while the registry is locked, or notes that it stays.
+void remove_or_note_folder(const std::string& path) {
+  if (!remove_folder(path)) registry().stuck.push_back(path);
+}
+
+/// The same of a file.
+void remove_or_note_file(const std::string& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) registry().stuck.push_back(path);
 }
 
 /// Removes a file, or a folder with all that is in it, if it is there.
@@ -199,7 +211,7 @@ UnfinishedFile::UnfinishedFile(std::string final_path, std::string name, const s
 UnfinishedFile::~UnfinishedFile() {
   if (path_.empty() || is_kept()) return;
   const std::lock_guard lock(registry().mutex);
-  if (registry().files.erase(path_) > 0) ::unlink(path_.c_str());
+  if (registry().files.erase(path_) > 0) remove_or_note_file(path_);
 }
 
 int UnfinishedFile::create() {
@@ -282,7 +294,7 @@ bool is_temporary_path(const std::string& path, const std::string& final_path) {
 
 void remove_temporary_folder(const std::string& folder) {
   const std::lock_guard lock(registry().mutex);
-  if (registry().folders.erase(folder) > 0) remove_folder(folder);
+  if (registry().folders.erase(folder) > 0) remove_or_note_folder(folder);
 }
 
 std::vector<std::string> remove_unfinished_files() {
@@ -293,17 +305,24 @@ std::vector<std::string> remove_unfinished_files() {
   all.spare.reset();
   std::vector<std::string> names;
   for (const auto& [path, name] : all.files) {
-    ::unlink(path.c_str());
+    remove_or_note_file(path);
     if (!name.empty()) names.push_back(name);
   }
   for (const auto& [path, name] : all.folders) {
-    remove_folder(path);
+    remove_or_note_folder(path);
     if (!name.empty()) names.push_back(name);
   }
   all.files.clear();
   all.folders.clear();
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::vector<std::string> temporary_paths_left() {
+  const std::lock_guard lock(registry().mutex);
+  std::vector<std::string> paths = registry().stuck;
+  std::sort(paths.begin(), paths.end());
+  return paths;
 }
 
 std::unique_lock<std::recursive_mutex> hold_off_end_of_run() { return lock_to_create(); }

@@ -98,6 +98,10 @@ void remove_temporary_folder(const std::string& folder);
 /// nothing if it was called before.
 std::vector<std::string> remove_unfinished_files();
 
+/// Temporary files and folders that this process could not remove so far, sorted: whoever runs it
+/// has to.
+[[nodiscard]] std::vector<std::string> temporary_paths_left();
+
 /// While this is held, remove_unfinished_files() waits: files that belong together get their names
 /// all, or none of them.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> hold_off_end_of_run();

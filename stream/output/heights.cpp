@@ -1,8 +1,9 @@
 #include "stream/output/heights.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
+
+#include "stream/points/mean_height.h"
 
 namespace spillway::stream {
 namespace {
@@ -36,21 +37,19 @@ void take_mean(std::span<const DroppedDuplicate> duplicates, std::span<VertexId>
     return a.kept < b.kept;
   };
   std::sort(by_vertex.begin(), by_vertex.end(), kept_before);
-  std::vector<double> stack;
+  MeanHeight mean;
   for (auto group = by_vertex.begin(); group != by_vertex.end();) {
     const auto end = std::upper_bound(group, by_vertex.end(), *group, kept_before);
     VertexId& kept = input_index[group->kept];
     VertexId first = kept;
-    stack.assign(1, heights[kept]);
+    mean.add(heights[kept]);
     for (; group != end; ++group) {
       const VertexId other = input_index[group->dropped];
-      stack.push_back(heights[other]);
+      mean.add(heights[other]);
       if (rank_of(other, order) < rank_of(first, order)) first = other;
     }
     kept = first;
-    std::sort(stack.begin(), stack.end());
-    heights[kept] =
-        std::accumulate(stack.begin(), stack.end(), 0.0) / static_cast<double>(stack.size());
+    heights[kept] = mean.take();
   }
 }
 

@@ -1,13 +1,11 @@
 #include "stream/points/equal_points.h"
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace spillway::stream {
 
 EqualPoints::EqualPoints(int dimension, Heights choice)
-    : mean_(dimension == 2 && choice == Heights::kMean) {
+    : is_mean_(dimension == 2 && choice == Heights::kMean) {
   if (dimension != 2) return;
   if (choice == Heights::kLowest) sign_ = 1;
   if (choice == Heights::kHighest) sign_ = -1;
@@ -26,16 +24,12 @@ void EqualPoints::add(const PointsView& points) {
       chosen_.clear();
       points.subview(i, 1).append_to(chosen_);
     }
-    if (mean_) heights_.push_back(point[2]);
+    if (is_mean_) mean_.add(point[2]);
   }
 }
 
 PointBlock EqualPoints::choose() {
-  if (mean_) {
-    std::sort(heights_.begin(), heights_.end());
-    chosen_.points.front()[2] = std::accumulate(heights_.begin(), heights_.end(), 0.0) /
-                                static_cast<double>(heights_.size());
-  }
+  if (is_mean_) chosen_.points.front()[2] = mean_.take();
   return std::move(chosen_);
 }
 

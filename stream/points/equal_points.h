@@ -3,16 +3,15 @@
 #include <spillway/choices.h>
 
 #include <cstdint>
-#include <vector>
 
 #include "src/geometry/framed_point.h"
+#include "stream/points/mean_height.h"
 #include "stream/points/points_view.h"
 
 namespace spillway::stream {
 
 /// Makes one point of any number of points that are one vertex: the same as choose_heights() (in
-/// space keep_first()) would make of them, without having all in memory. Only the mean takes 8
-/// bytes for each of them.
+/// space keep_first()) would make of them, without having all in memory.
 class EqualPoints {
  public:
   EqualPoints(int dimension, Heights choice);
@@ -39,11 +38,11 @@ class EqualPoints {
   [[nodiscard]] Rank rank_of(const LatticePoint& point, std::uint64_t place) const;
 
   double sign_ = 0;  ///< of heights in ranks: 1 for the lowest, -1 for the highest
-  bool mean_;
+  bool is_mean_;
   std::uint64_t count_ = 0;
   Rank least_{};
   PointBlock chosen_;
-  std::vector<double> heights_;  ///< for their mean
+  MeanHeight mean_;
 };
 
 }  // namespace spillway::stream

@@ -1,6 +1,7 @@
 #include "tools/process/failure.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "formats/disk/unfinished_files.h"
 #include "src/error.h"
@@ -104,6 +106,18 @@ int report_failure(const std::exception_ptr& failure) noexcept {
   }
 }
 
+std::string temporary_paths_left_in_words() {
+  const std::vector<std::string> paths = temporary_paths_left();
+  if (paths.empty()) return "";
+  return fmt::format("cannot remove what is temporary: {}; remove it by hand",
+                     fmt::join(paths, ", "));
+}
+
+void tell_of_temporary_paths_left() {
+  const std::string words = temporary_paths_left_in_words();
+  if (!words.empty()) write_warning(words);
+}
+
 void handle_uncaught_exceptions() {
   std::set_terminate([] {
     const std::exception_ptr thrown = std::current_exception();
@@ -111,6 +125,7 @@ void handle_uncaught_exceptions() {
         thrown ? thrown
                : std::make_exception_ptr(Failure("a fault of the program itself ends it")));
     remove_unfinished_files();
+    tell_of_temporary_paths_left();
     _exit(exit_code);
   });
 }

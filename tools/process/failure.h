@@ -2,6 +2,7 @@
 // How a run ends that went wrong: one line on standard error, and an exit code.
 
 #include <exception>
+#include <string>
 
 #include "src/rooms.h"
 
@@ -16,5 +17,11 @@ int report_failure(const std::exception_ptr& failure) noexcept;
 /// Makes an exception that nobody catches, as in a thread of a library, end the run as
 /// report_failure() would, with nothing left behind.
 void handle_uncaught_exceptions();
+
+/// Words for the temporary files and folders that could not be removed; "" if there are none.
+std::string temporary_paths_left_in_words();
+
+/// Warns of them, for the end of main.
+void tell_of_temporary_paths_left();
 
 }  // namespace spillway::command

@@ -16,6 +16,7 @@
 
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
+#include "tools/process/failure.h"
 #include "tools/report/standard_error.h"
 
 namespace spillway::command {
@@ -58,7 +59,11 @@ sigset_t interrupts() {
   try {
     if (first_action().what) first_action().what();
     const std::vector<std::string> outputs = remove_unfinished_files();
-    if (tell) last_message(message_of(number, outputs) + first_action().advice);
+    const std::string left = temporary_paths_left_in_words();
+    if (tell) {
+      last_message(message_of(number, outputs) + first_action().advice +
+                   (left.empty() ? "" : "; " + left));
+    }
   } catch (const std::exception&) {  // no memory for words
   }
   if (distributed::launch().ranks > 1) std::this_thread::sleep_for(kOtherRanks);

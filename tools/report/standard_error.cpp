@@ -67,6 +67,10 @@ void write_error(std::string_view message) {
   write_to_standard_error(fmt::format("spillway: error: {}\n", printable(message)));
 }
 
+void write_warning(std::string_view message) {
+  write_to_standard_error(fmt::format("spillway: warning: {}\n", printable(message)));
+}
+
 void last_message(std::string_view message) {
   const std::unique_lock turn(turns().mutex, kLongestWait);
   if (!turn.owns_lock()) return;  // somebody waits for standard error to take more

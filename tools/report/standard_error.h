@@ -24,6 +24,9 @@ void write_to_standard_error(std::string_view text);
 /// A line "spillway: error: " and the message, with its control characters escaped.
 void write_error(std::string_view message);
 
+/// The same with "warning", for what comes after all else.
+void write_warning(std::string_view message);
+
 /// A message, also escaped, as the style wants it, over a line that is being rewritten; all that is
 /// written later is lost. Gives up where standard error takes nothing: it never waits long. For the
 /// end of the run by a signal.

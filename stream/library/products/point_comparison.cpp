@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -21,78 +22,92 @@ constexpr std::uint64_t kVertexBit = std::uint64_t{1} << 63;
 /// that waits to be spilled.
 constexpr std::uint64_t kTileBytes = 128;
 constexpr std::uint64_t kBufferedBytes = 32;
+/// What a batch of points on its way to the tiles takes, about, and how many there are at least.
+constexpr std::uint64_t kBatchBytes = 4'000'000;
+constexpr std::size_t kLeastBatches = 2;
+constexpr std::size_t kEnoughBatches = 6;
 
-template <int D>
-class TileComparison {
+/// The points of the input and the vertices at one place, told one after the other.
+class Place {
  public:
-  TileComparison(const TilePoints<D>& tile, Faults& faults) : tile_(tile), faults_(faults) {
-    order_.resize(tile.points.size());
-    std::iota(order_.begin(), order_.end(), VertexId{0});
-    std::sort(order_.begin(), order_.end(), [&](VertexId a, VertexId b) {
-      return tile.points[a] != tile.points[b] ? tile.points[a] < tile.points[b]
-                                              : tile.index[a] < tile.index[b];
-    });
+  /// `at`: as many coordinates as the mesh has dimensions. Both must outlive it.
+  Place(std::span<const double> at, Faults& faults) : at_(at), faults_(faults) {}
+
+  void add(std::uint64_t index, double height) {
+    if ((index & kVertexBit) != 0) {
+      add_vertex(index & ~kVertexBit, height);
+    } else {
+      first_point_ = std::min(first_point_.value_or(index), index);
+      lowest_ = std::min(lowest_, height);
+      highest_ = std::max(highest_, height);
+    }
   }
 
-  /// The number of distinct points of the input.
-  std::uint64_t run() {
-    std::uint64_t distinct = 0;
-    for (auto begin = order_.begin(); begin != order_.end();) {
-      const auto end = std::find_if(
-          begin, order_.end(), [&](VertexId i) { return tile_.points[i] != tile_.points[*begin]; });
-      const auto vertices =
-          std::find_if(begin, end, [&](VertexId i) { return (tile_.index[i] & kVertexBit) != 0; });
-      if (vertices != begin) ++distinct;
-      compare_place(begin, vertices, end);
-      begin = end;
+  /// Once all have been told. Whether there are points of the input.
+  bool compare() {
+    if (!vertex_) {
+      faults_.add("input point {} ({}) is no vertex of the mesh", *first_point_, text());
+    } else if (!first_point_) {
+      add_surplus(*vertex_);
+    } else if (at_.size() == 2 && !(height_ >= lowest_ && height_ <= highest_)) {
+      faults_.add("vertex {} ({}) has height {}, but the input's points there have {} to {}",
+                  *vertex_, text(), height_, lowest_, highest_);
     }
-    return distinct;
+    return first_point_.has_value();
   }
 
  private:
-  using Iterator = std::vector<VertexId>::const_iterator;
-
-  /// Points of the input, then vertices, all at one place.
-  void compare_place(Iterator points, Iterator vertices, Iterator end) {
-    if (vertices == end) {
-      faults_.add("input point {} ({}) is no vertex of the mesh", tile_.index[*points],
-                  fmt::join(tile_.points[*points], ", "));
-    }
-    for (Iterator v = vertices; v != end; ++v) {
-      const std::uint64_t number = tile_.index[*v] & ~kVertexBit;
-      if (points == vertices || v != vertices) {
-        faults_.add("vertex {} ({}) is no point of the input", number,
-                    fmt::join(tile_.points[*v], ", "));
-      } else if constexpr (D == 2) {
-        compare_height(points, vertices, number);
-      }
-    }
+  void add_vertex(std::uint64_t number, double height) {
+    if (vertex_) return add_surplus(number);
+    vertex_ = number;
+    height_ = height;
   }
 
-  void compare_height(Iterator points, Iterator vertex, std::uint64_t number) {
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (Iterator p = points; p != vertex; ++p) {
-      lowest = std::min(lowest, tile_.heights[*p]);
-      highest = std::max(highest, tile_.heights[*p]);
-    }
-    const double height = tile_.heights[*vertex];
-    if (height >= lowest && height <= highest) return;
-    faults_.add("vertex {} ({}) has height {}, but the input's points there have {} to {}", number,
-                fmt::join(tile_.points[*vertex], ", "), height, lowest, highest);
+  void add_surplus(std::uint64_t vertex) {
+    faults_.add("vertex {} ({}) is no point of the input", vertex, text());
   }
 
-  const TilePoints<D>& tile_;
+  [[nodiscard]] std::string text() const { return fmt::format("{}", fmt::join(at_, ", ")); }
+
+  std::span<const double> at_;
   Faults& faults_;
-  std::vector<VertexId> order_;
+  std::optional<std::uint64_t> first_point_;
+  std::optional<std::uint64_t> vertex_;
+  double height_ = 0;  ///< of the vertex
+  double lowest_ = std::numeric_limits<double>::infinity();
+  double highest_ = -std::numeric_limits<double>::infinity();
 };
+
+/// Compares the points and vertices of a tile. Returns the number of distinct points of the input.
+template <int D>
+std::uint64_t compare_tile(const TilePoints<D>& tile, Faults& faults) {
+  std::vector<VertexId> order(tile.points.size());
+  std::iota(order.begin(), order.end(), VertexId{0});
+  std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+    return tile.points[a] != tile.points[b] ? tile.points[a] < tile.points[b]
+                                            : tile.index[a] < tile.index[b];
+  });
+  std::uint64_t distinct = 0;
+  for (auto i = order.begin(); i != order.end();) {
+    const Point<D>& at = tile.points[*i];
+    Place place(at, faults);
+    for (; i != order.end() && tile.points[*i] == at; ++i) {
+      if constexpr (D == 2) place.add(tile.index[*i], tile.heights[*i]);
+      if constexpr (D != 2) place.add(tile.index[*i], 0);
+    }
+    distinct += place.compare() ? 1 : 0;
+  }
+  return distinct;
+}
 
 /// Compares all tiles of a tree.
 template <int D>
 class TreeComparison {
  public:
-  TreeComparison(TileTree& tree, Faults& faults, RunWatch& watch)
-      : tree_(tree), faults_(faults), watch_(watch) {}
+  /// `tell_equal` gets what the tree is to call with all points of a tile that has but one place.
+  TreeComparison(TileTree& tree, std::function<void(const PointsView&)>& tell_equal, Faults& faults,
+                 RunWatch& watch)
+      : tree_(tree), tell_equal_(tell_equal), faults_(faults), watch_(watch) {}
 
   /// The number of distinct points of the input.
   std::uint64_t run() {
@@ -105,14 +120,25 @@ class TreeComparison {
     std::uint64_t distinct = 0;
     for (const TileNode<D>& child : node.children) distinct += compare(child);
     if (!node.children.empty()) return distinct;
-    distinct =
-        TileComparison<D>(tree_.loader().decode<D>(tree_.loader().read(node)), faults_).run();
+    Place place(node.box.lo, faults_);
+    tell_equal_ = [&](const PointsView& points) {
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        place.add(points.index[i], points.points[i][2]);
+      }
+    };
+    StoredTile stored = tree_.loader().read(node);
+    if (stored.left_out > 0) {
+      distinct = place.compare() ? 1 : 0;
+    } else {
+      distinct = compare_tile<D>(tree_.loader().decode<D>(std::move(stored)), faults_);
+    }
     done_ += node.points;
     watch_.tell(done_, static_cast<double>(done_) / static_cast<double>(tree_.points()));
     return distinct;
   }
 
   TileTree& tree_;
+  std::function<void(const PointsView&)>& tell_equal_;
   Faults& faults_;
   RunWatch& watch_;
   std::uint64_t done_ = 0;
@@ -164,13 +190,17 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
    private:
     RunWatch& watch_;
   } dealing(watch);
+  std::function<void(const PointsView&)> tell_equal;
   TileTree tree(
       {.dimension = cut_axes(dimension_),
        .capacity = std::max<std::size_t>(1000, memory_ / 2 / kTileBytes),
        .buffered_points = memory_ / 3 / kBufferedBytes,
        .expected = input.expected() ? std::optional(*input.expected() + vertices_) : std::nullopt,
        .index = true,
-       .record_size = static_cast<std::size_t>(further_axes(dimension_)) * sizeof(double)},
+       .record_size = static_cast<std::size_t>(further_axes(dimension_)) * sizeof(double),
+       .batches = std::clamp<std::size_t>(memory_ / 8 / kBatchBytes, kLeastBatches, kEnoughBatches),
+       .one_of_equal = dimension_ <= 3 ? std::optional(Heights::kFirst) : std::nullopt,
+       .tell_equal = [&](const PointsView& points) { tell_equal(points); }},
       scratch_, times, dealing);
   Faults faults(report, options.most_faults);
   const std::uint64_t before = faults.count();
@@ -207,8 +237,9 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
       watch.end(tree.divide_large());
     }
     watch.begin("compare", "points");
-    distinct = with_dimension(dimension_,
-                              [&](auto d) { return TreeComparison<d>(tree, faults, watch).run(); });
+    distinct = with_dimension(dimension_, [&](auto d) {
+      return TreeComparison<d>(tree, tell_equal, faults, watch).run();
+    });
     watch.end(tree.points());
   });
   if (faults.count() > before) return;

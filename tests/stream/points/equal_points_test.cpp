@@ -52,29 +52,28 @@ TEST(EqualPoints, OfSpaceAreTheFirst) {
   EXPECT_EQ(chosen(Heights::kMean, false, 3).points[0][2], 5);
 }
 
-/// To the last bit, whatever the heights.
-TEST(EqualPoints, ChoosesWhatIsChosenOfPointsInMemory) {
+/// To the last bit, whatever the heights and however many they are.
+void expect_what_is_chosen_of_points_in_memory(std::size_t count) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> height(-1e3, 1e9);
-  constexpr std::size_t kCount = 1000;
-  std::vector<LatticePoint> points(kCount);
-  std::vector<double> heights(kCount);
-  std::vector<std::uint64_t> index(kCount);
+  std::vector<LatticePoint> points(count);
+  std::vector<double> heights(count);
+  std::vector<std::uint64_t> index(count);
   std::iota(index.begin(), index.end(), 7);
   std::shuffle(index.begin(), index.end(), random);
-  for (std::size_t i = 0; i < kCount; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     heights[i] = std::round(height(random) / 1e7) * 0.1;
     points[i] = {1, 1, heights[i]};
   }
   for (const Heights choice :
        {Heights::kFirst, Heights::kLowest, Heights::kHighest, Heights::kMean}) {
     std::vector<DroppedDuplicate> duplicates;
-    for (std::size_t i = 1; i < kCount; ++i) {
+    for (std::size_t i = 1; i < count; ++i) {
       DroppedDuplicate& duplicate = duplicates.emplace_back();
       duplicate.dropped = static_cast<VertexId>(i);
       duplicate.kept = 0;
     }
-    std::vector<VertexId> places(kCount);
+    std::vector<VertexId> places(count);
     std::iota(places.begin(), places.end(), VertexId{0});
     std::vector<double> chosen_heights = heights;
     choose_heights(duplicates, choice, places, chosen_heights, index);
@@ -84,6 +83,35 @@ TEST(EqualPoints, ChoosesWhatIsChosenOfPointsInMemory) {
     EXPECT_EQ(chosen.index[0], index[places[0]]);
     EXPECT_EQ(chosen.points[0][2], chosen_heights[places[0]]);
   }
+}
+
+TEST(EqualPoints, ChooseWhatIsChosenOfPointsInMemory) {
+  expect_what_is_chosen_of_points_in_memory(1000);
+  expect_what_is_chosen_of_points_in_memory(10'000);
+}
+
+TEST(MeanHeight, OfVeryManyIsExactInAnyOrder) {
+  constexpr int kPairs = 100'000;
+  MeanHeight up;
+  MeanHeight down;
+  for (int i = 0; i < kPairs; ++i) {
+    up.add(i);
+    up.add(1e17);
+    down.add(1e17);
+    down.add(kPairs - 1 - i);
+  }
+  const double mean = up.take();
+  EXPECT_EQ(mean, down.take());
+  EXPECT_DOUBLE_EQ(mean, (1e17 + (kPairs - 1) / 2.0) / 2);
+}
+
+TEST(MeanHeight, BeginsAnewOnceTaken) {
+  MeanHeight mean;
+  for (int i = 0; i < 5000; ++i) mean.add(3);
+  EXPECT_EQ(mean.take(), 3);
+  mean.add(1);
+  mean.add(2);
+  EXPECT_EQ(mean.take(), 1.5);
 }
 
 }  // namespace

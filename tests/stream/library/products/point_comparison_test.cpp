@@ -85,6 +85,35 @@ TEST_P(PointComparisonIn, SeesAMovedVertexFromBothSides) {
   EXPECT_EQ(compare(vertices, input, GetParam()).fault_count, 2U);
 }
 
+TEST_P(PointComparisonIn, FoldsMoreEqualPointsThanATileHas) {
+  Points vertices = random_points(100);
+  Points input = vertices;
+  input.insert(input.end(), 20'000, vertices[7]);
+  EXPECT_THAT(compare(vertices, input, GetParam()).proved,
+              Contains(HasSubstr("the 100 distinct points of the input")));
+
+  const Point<3> lacking = vertices[7];
+  vertices.erase(vertices.begin() + 7);
+  const CheckReport without = compare(vertices, input, GetParam());
+  EXPECT_EQ(without.fault_count, 1U);
+  EXPECT_THAT(without.faults, Contains(HasSubstr("input point 7 (")));
+
+  vertices.insert(vertices.end(), 20'000, lacking);
+  EXPECT_EQ(compare(vertices, random_points(100), GetParam()).fault_count, 19'999U);
+}
+
+TEST(PointComparison, SeesAWrongHeightAmongMoreEqualPointsThanATileHas) {
+  Points vertices = random_points(100);
+  Points input = vertices;
+  for (int i = 0; i < 20'000; ++i) {
+    input.push_back({vertices[7][0], vertices[7][1], vertices[7][2] + i});
+  }
+  vertices[7][2] += 500;
+  EXPECT_EQ(compare(vertices, input, 2).fault_count, 0U);
+  vertices[7][2] -= 501;
+  EXPECT_THAT(compare(vertices, input, 2).faults, Contains(HasSubstr("vertex 7 (")));
+}
+
 INSTANTIATE_TEST_SUITE_P(Dimensions, PointComparisonIn, ::testing::Values(2, 3));
 
 TEST(PointComparison, SeesAWrongHeight) {

@@ -1,0 +1,20 @@
+# Every call to the system fails in turn: a library loaded before the command makes it fail.
+
+find_package(Python3 COMPONENTS Interpreter)
+# The sanitizers have an allocator of their own, and must be loaded first.
+if(Python3_FOUND AND NOT SPILLWAY_SANITIZE)
+  add_library(fault_injector MODULE ${CMAKE_CURRENT_LIST_DIR}/fault_injector.cpp)
+  target_link_libraries(fault_injector PRIVATE ${CMAKE_DL_LIBS})
+  set(driver ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/fault_driver.py
+    $<TARGET_FILE:spillway> $<TARGET_FILE:fault_injector> --jobs 2)
+  function(spillway_fault_test name)
+    add_test(NAME Faults.${name} COMMAND ${driver} ${ARGN})
+    set_tests_properties(Faults.${name} PROPERTIES LABELS fault TIMEOUT 300)
+  endfunction()
+  spillway_fault_test(EveryCallOnFiles --calls files --family
+    spooled,text,space,tiles,laz,thinned,dem,contour,picture,page,checked,converted --most 12)
+  spillway_fault_test(EveryCallOnScratchFiles --calls files --family spilled,sorted --most 8)
+  spillway_fault_test(EveryCallOfRunsThatGoOn --calls files --family resumed,batch --most 12)
+  spillway_fault_test(EveryRequestOfMemory --calls memory --most 15)
+  spillway_fault_test(EveryThread --calls thread)
+endif()
