@@ -103,6 +103,7 @@ void bind_point_options(py::module_& module) {
       .def_property("no_header", table_getter(&TextTable::no_header),
                     table_setter(&TextTable::no_header))
       .def_readwrite("skip_invalid", &PointOptions::skip_invalid)
+      .def_readwrite("max_expansion", &PointOptions::max_expansion)
       .def_readwrite("salvage", &PointOptions::salvage)
       .def_readwrite("skip_broken", &PointOptions::skip_broken)
       .def_readwrite("keep_withheld", &PointOptions::keep_withheld)

@@ -140,6 +140,47 @@ class ZstdInput : public InputFile {
   bool output_pending_ = false;  // the last call filled the buffer and may have had more to give
 };
 
+/// What another input holds, which must not become much more than its source has given.
+class LimitedExpansion : public InputFile {
+ public:
+  LimitedExpansion(std::unique_ptr<InputFile> content, const InputBytes& source,
+                   Compression compression, std::uint64_t max_expansion)
+      : content_(std::move(content)),
+        source_(source),
+        compression_(compression),
+        max_expansion_(max_expansion) {}
+
+  std::size_t read(std::span<std::byte> buffer) override {
+    const std::size_t got = content_->read(buffer);
+    given_ += got;
+    if (given_ > kFreeExpansion && given_ / max_expansion_ > source_.position()) {
+      throw BadInput(source_.name(),
+                     fmt::format("the {} data expands to more than {} times its size; if that is "
+                                 "meant, decompress it first, or allow a larger expansion",
+                                 name_of(compression_), max_expansion_),
+                     at_byte(source_.position()));
+    }
+    return got;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
+  [[nodiscard]] const std::string& name() const override { return source_.name(); }
+
+ private:
+  static constexpr std::uint64_t kFreeExpansion = std::uint64_t{64} << 20;
+
+  std::unique_ptr<InputFile> content_;
+  const InputBytes& source_;
+  Compression compression_;
+  std::uint64_t max_expansion_;
+  std::uint64_t given_ = 0;
+};
+
+std::unique_ptr<InputFile> unlimited(InputBytes& source, Compression compression) {
+  if (compression == Compression::kZstd) return std::make_unique<ZstdInput>(source);
+  return std::make_unique<BoostInput>(source, compression);
+}
+
 }  // namespace
 
 Compression compression_of_name(const std::string& path) {
@@ -175,9 +216,10 @@ Compression compression_of_content(std::span<const std::byte> first_bytes) {
   return Compression::kNone;
 }
 
-std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression) {
-  if (compression == Compression::kZstd) return std::make_unique<ZstdInput>(source);
-  return std::make_unique<BoostInput>(source, compression);
+std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression,
+                                        std::uint64_t max_expansion) {
+  return std::make_unique<LimitedExpansion>(unlimited(source, compression), source, compression,
+                                            max_expansion);
 }
 
 }  // namespace spillway::formats

@@ -83,19 +83,26 @@ class DiskInput : public InputFile {
   }
 
   std::size_t read(std::span<std::byte> buffer) override {
-    return read_all(buffer, [this](std::span<std::byte> rest, std::size_t /*done*/) {
-      if (!size_ && stop_.stop_possible()) wait_for_writer(file_.get(), stop_);
-      return ::read(file_.get(), rest.data(), rest.size());
-    });
+    const std::size_t got =
+        read_all(buffer, [this](std::span<std::byte> rest, std::size_t /*done*/) {
+          if (!size_ && stop_.stop_possible()) wait_for_writer(file_.get(), stop_);
+          return ::read(file_.get(), rest.data(), rest.size());
+        });
+    if (size_ && got < buffer.size()) {
+      check_end(static_cast<std::uint64_t>(::lseek(file_.get(), 0, SEEK_CUR) - start_));
+    }
+    return got;
   }
 
   std::optional<std::size_t> read_at(std::uint64_t position,
                                      std::span<std::byte> buffer) const override {
     if (!size_) return std::nullopt;
-    return read_all(buffer, [&](std::span<std::byte> rest, std::size_t done) {
+    const std::size_t got = read_all(buffer, [&](std::span<std::byte> rest, std::size_t done) {
       return ::pread(file_.get(), rest.data(), rest.size(),
                      start_ + static_cast<off_t>(position + done));
     });
+    if (got > 0 && got < buffer.size()) check_end(position + got);
+    return got;
   }
 
   bool seek(std::uint64_t position) override {
@@ -110,6 +117,20 @@ class DiskInput : public InputFile {
  private:
   [[noreturn]] void fail(int error) const {
     throw SystemRefusal(fmt::format("cannot read {}: {}", name_, reason(error)), name_, error);
+  }
+
+  /// Throws BadInput if the file ends at this byte, but ended elsewhere when it was opened: who has
+  /// read it to there has not read what it was, nor what it becomes.
+  void check_end(std::uint64_t end) const {
+    struct stat status {};
+    if (*size_ == 0 || end == *size_ || ::fstat(file_.get(), &status) != 0) return;
+    const auto now = static_cast<std::uint64_t>(status.st_size - start_);
+    if (now == *size_) return;  // as of files that the system makes up
+    throw BadInput(name_,
+                   fmt::format("the file had {} bytes when it was opened, and now has {}: it was "
+                               "changed while it was read; wait until it is complete",
+                               *size_, now),
+                   at_byte(end));
   }
 
   /// Fills the buffer by calls of read_some(rest, done), until the file ends.
@@ -351,7 +372,7 @@ std::unique_ptr<FileSystem> keep_outputs(std::string mark) {
 }
 
 std::unique_ptr<OutputFile> create_private_file(const std::string& path, const std::string& name) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (fd < 0) fail_to_create(name, errno);
   return std::make_unique<DiskOutput>(fd, name, nullptr, true);
 }

@@ -66,6 +66,8 @@ KeptScratchFolder::KeptScratchFolder(std::string path, std::optional<std::uint64
   if (::mkdir(path_.c_str(), 0700) != 0 && errno != EEXIST) {
     fail_at_scratch_file("create", path_, errno);
   }
+  // Who may put a link there must not choose where points are written.
+  if (fs::is_symlink(path_)) fail_at_scratch_file("create", path_, ELOOP);
 }
 
 KeptScratchFolder::~KeptScratchFolder() = default;
@@ -77,7 +79,8 @@ std::unique_ptr<ScratchFile> KeptScratchFolder::create(const std::string& label)
     path = (fs::path(path_) / fmt::format("{}-{}", label, ++files_->made)).string();
     files_->made_since_sync = true;
   }
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const int descriptor =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0600);
   if (descriptor < 0) fail_at_scratch_file("create", path, errno);
   ::close(descriptor);
   return std::make_unique<File>(std::move(path), 0, files_);

@@ -218,7 +218,7 @@ int UnfinishedFile::create() {
   const auto lock = lock_to_create();
   int descriptor = -1;
   if (is_kept()) {
-    descriptor = ::open(kept_path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    descriptor = ::open(kept_path_.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (descriptor >= 0) path_ = kept_path_;
     if (descriptor >= 0) sync_folder_of(kept_path_);
     return descriptor;

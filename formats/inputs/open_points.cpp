@@ -140,13 +140,13 @@ void check_text(InputBytes& source, PointFormats formats) {
 /// What is in the source if it is compressed, else null. Throws Failure unless that is text of
 /// points.
 std::unique_ptr<InputFile> text_in(InputBytes& source, const std::string& path,
-                                   PointFormats formats) {
+                                   std::uint64_t max_expansion, PointFormats formats) {
   const Compression compression = compression_of(source, path, formats);
   if (compression == Compression::kNone) {
     check_text(source, formats);
     return nullptr;
   }
-  auto content = std::make_unique<InputBytes>(decompressed(source, compression));
+  auto content = std::make_unique<InputBytes>(decompressed(source, compression, max_expansion));
   if (begins_as_points(content->peek(kProbe), formats) ||
       point_format_of_header(*content, formats) != nullptr) {
     fail_for_compressed(source);
@@ -176,7 +176,9 @@ std::unique_ptr<PointReader> open_point_reader(FileSystem& files, const std::str
   for (const MeshFormat* const mesh : mesh_formats()) {
     if (mesh->file_set != nullptr) mesh->file_set->check_is_points(files, path);
   }
-  if (format->is_text) input.content = text_in(*input.source, path, formats);
+  if (format->is_text) {
+    input.content = text_in(*input.source, path, options.max_expansion, formats);
+  }
   return format->open_reader(std::move(input), options);
 }
 

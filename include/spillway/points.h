@@ -111,6 +111,9 @@ struct PointOptions {
   /// Leave out and count rows of text, npy, PLY and PCD that are no points: what is no number, or
   /// not finite, or lacks a column. Without it they are an error.
   bool skip_invalid = false;
+  /// Of compressed text: most bytes for each byte of the file, so that a small file that expands
+  /// without end is an error; the first 64 MiB are free. No text of points comes near to it.
+  std::uint64_t max_expansion = 2000;
   bool keep_withheld = false;        ///< use points that LAS flags as withheld
   std::uint64_t every = 1;           ///< use records 0, n, 2n, ... of each file
   std::vector<int> classes{};        ///< use points of these classes, 0 to 255; empty: all

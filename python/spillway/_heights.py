@@ -199,7 +199,7 @@ def _ground(
         where = "where the ground is a mesh"
         refuse(of_points, [name for name in of_points if name not in kept], where)
         return _spillway.MeshOrigin(points[0], mesh_options(joined, mesh_format))
-    how_read = ["skip_invalid", "salvage", "keep_withheld", "skip_broken"]
+    how_read = ["skip_invalid", "max_expansion", "salvage", "keep_withheld", "skip_broken"]
     if ground is None:
         how_read += ["input_format", "columns"]
     joined.update({name: options.get(name) for name in how_read if options.get(name)})

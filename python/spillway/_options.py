@@ -49,6 +49,7 @@ class FilterOptions(TypedDict, total=False):
     decimal: str | None
     header: bool
     skip_invalid: bool
+    max_expansion: int
     salvage: bool
     keep_withheld: bool
     every: int | None
@@ -307,6 +308,13 @@ _OPTIONS = {
         "Leave out rows of text, npy, PLY and PCD that are no points. By default they are an error.",
         "points",
         attribute("skip_invalid"),
+    ),
+    "max_expansion": _Option(
+        "int, optional",
+        "Of compressed text, most bytes for each byte of the file; a file that expands to more is an "
+        "error. By default 2000.",
+        "points",
+        attribute("max_expansion"),
     ),
     "salvage": _Option(
         "bool, optional",

@@ -76,6 +76,7 @@ class PointOptions:
     decimal: str
     no_header: bool
     skip_invalid: bool
+    max_expansion: int
     salvage: bool
     skip_broken: bool
     keep_withheld: bool

@@ -33,7 +33,7 @@ void together(const Ranks& ranks, const char* activity, const std::string& name,
 SharedFile::SharedFile(const Ranks& ranks, const std::string& path, const std::string& name)
     : ranks_(ranks), name_(name.empty() ? path : name) {
   const auto open = [&](int flags) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC | flags, 0666);
     return descriptor_ >= 0;
   };
   together(ranks_, "create", name_, [&] { return ranks_.rank() != 0 || open(O_CREAT | O_TRUNC); });

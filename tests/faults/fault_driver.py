@@ -5,11 +5,12 @@
 
 Each family is a kind of run. It is made once to count its calls, and then once for each call and
 each error that the system may give: of files (open, read, write, ...), of memory from a page on,
-and of threads. After an error that the run cannot bear, it must end with exit code 1 and one line
-that says what failed and why; nothing may be under the final name, beside it, or in the temporary
-folder. After one that it can (an interrupted call, half a transfer), its bytes must be those of
-the run without faults. --most N takes N of a family's calls of each kind, evenly, instead of all.
-Exits with 1 if a run ended otherwise, and with 77 if it is skipped.
+of threads, and of what is read from scratch files. After an error that the run cannot bear, it must
+end with exit code 1 and one line that says what failed and why; nothing may be under the final
+name, beside it, or in the temporary folder. After one that it can (an interrupted call, half a
+transfer), its bytes must be those of the run without faults. --most N takes N of a family's calls
+of each kind, evenly, instead of all.
+Exits with 1 if a run ended otherwise.
 """
 import argparse
 import concurrent.futures
@@ -30,10 +31,11 @@ SPACE = ["generate", "uniform", "--dim", "3", "-n", "5000", "-o", "in.npy"]
 TILES = ["generate", "terrain", "--grid", "2x2", "-n", "4000", "-o", "in#.las"]
 MESH = ["triangulate", "in.las", "-o", "mesh.spm"]
 
-# Name: what is run before, arguments, outputs.
+# Name: what is run before, and arguments.
 FAMILIES = {
     "spilled": ([MANY], ["triangulate", "in.las", "-o", "out.spm", *SMALL]),
-    "spooled": ([POINTS], ["triangulate", "in.las", "-o", "out.ply", "--tile-points", "2000"]),
+    "spooled": ([MANY], ["triangulate", "in.las", "-o", "out.ply", *SMALL]),
+    "tiled": ([POINTS], ["triangulate", "in.las", "-o", "out.obj", "--tile-points", "2000"]),
     "text": ([TABLE], ["triangulate", "in.csv", "-o", "out.sma"]),
     "space": ([SPACE], ["triangulate", "in.npy", "-o", "out.vtu", "--dim", "3"]),
     "resumed": ([POINTS], ["triangulate", "in.las", "-o", "out.spm", "--resume", "state",
@@ -43,7 +45,7 @@ FAMILIES = {
     "sorted": ([MANY], ["convert", "in.las", "-o", "out.spp", "--sorted", *SMALL]),
     "thinned": ([POINTS], ["convert", "in.las", "-o", "out.npy", "--thin", "5"]),
     "dem": ([POINTS], ["dem", "in.las", "--resolution", "20", "-o", "out.tif"]),
-    "contour": ([POINTS], ["contour", "in.las", "--interval", "20", "-o", "out.geojson"]),
+    "contour": ([POINTS], ["contour", "in.las", "--interval", "20", "-o", "out.shp"]),
     "picture": ([POINTS], ["render", "in.las", "-o", "out.png"]),
     "page": ([POINTS], ["render", "in.las", "-o", "out.html"]),
     "checked": ([POINTS, MESH], ["check", "mesh.spm", "--points", "in.las"]),
@@ -51,9 +53,12 @@ FAMILIES = {
     "batch": ([TILES], ["batch", "in*.las", "--to", "spm,ply", "-j", "1"]),
 }
 
-SHORT = 0  # as an error: half of a transfer is done
+# As errors: half of a transfer is done; a bit is flipped of what is read; nothing is read any more.
+SHORT, FLIPPED, ENDED = 0, -1, -2
+WORDS = {SHORT: "half a transfer", FLIPPED: "a flipped bit", ENDED: "an early end"}
 BEARABLE = {SHORT, errno.EINTR}
 ERRORS = {
+    "scratch": [FLIPPED, ENDED],
     "open": [errno.EMFILE, errno.EACCES, errno.ENOSPC],
     "read": [errno.EIO, errno.EINTR, SHORT],
     "write": [errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EINTR, SHORT],
@@ -67,8 +72,9 @@ ERRORS = {
     "thread": [errno.EAGAIN],
 }
 OF_FILES = [call for call in ERRORS if call not in ("memory", "thread")]
-REASONS = {"memory": "memory", "thread": "thread"}
-SKIPPED = 77
+REASONS = {"memory": "memory", "thread": "thread", "scratch": "tmp/"}
+NEED_GDAL = {"dem", "contour"}  # whose libraries end the process where they get no memory
+OF_SCRATCH = {"FAULT_FOLDER": "tmp"}  # within the folder of the run
 
 
 class Family:
@@ -85,6 +91,8 @@ class Family:
         self.inputs = {path.name for path in self.folder.iterdir()}
         right = self.run("count", {"FAULT_COUNTS": "counts"})
         self.counts = dict(line.split() for line in right.counts.splitlines())
+        of_scratch = self.run("count", {"FAULT_COUNTS": "counts", **OF_SCRATCH}).counts
+        self.counts["scratch"] = dict(line.split() for line in of_scratch.splitlines())["read"]
         if right.code != 0:
             raise SystemExit(f"{name}: the run without faults ends with {right.code}: {right.text}")
         self.right = right.files
@@ -101,8 +109,9 @@ class Run:
         (folder / "tmp").mkdir(parents=True)
         for path in family.inputs:
             os.link(family.folder / path, folder / path)
-        injected = {"LD_PRELOAD": family.options.injector, "FAULT_FOLDER": str(folder),
-                    "TMPDIR": str(folder / "tmp"), "SPILLWAY_THREADS": "2", **environment}
+        within = folder / environment.pop("FAULT_FOLDER", "")
+        injected = {"LD_PRELOAD": family.options.injector, "FAULT_FOLDER": str(within),
+                    "TMPDIR": str(folder / "tmp"), **environment}
         try:
             ended = subprocess.run([family.options.command, *family.arguments], cwd=folder,
                                    env={**os.environ, **injected}, capture_output=True, timeout=60)
@@ -166,9 +175,12 @@ def evenly(count, most):
 
 def cases_of(family, options):
     for call in options.calls:
+        if call == "memory" and family.name in NEED_GDAL:
+            continue
         for n in evenly(int(family.counts[call]), options.most):
             for error in ERRORS[call]:
-                lasting = error not in BEARABLE and call != "memory"  # the run frees some itself
+                # Of memory, the run frees some itself.
+                lasting = error not in BEARABLE and call not in ("memory", "scratch")
                 for lasts in ("0", "1") if lasting else ("0",):
                     yield family, call, n, error, lasts
 
@@ -176,14 +188,17 @@ def cases_of(family, options):
 def try_case(case):
     family, call, n, error, lasts = case
     name = f"{call}_{n}_{error}_{lasts}"
-    run = family.run(name, {"FAULT_CALL": call, "FAULT_AT": str(n), "FAULT_ERROR": str(error),
-                            "FAULT_LASTS": lasts})
+    fault = {"FAULT_AT": str(n), "FAULT_ERROR": str(error), "FAULT_LASTS": lasts}
+    if call == "scratch":
+        run = family.run(name, {"FAULT_CALL": "read", **fault, **OF_SCRATCH})
+    else:
+        run = family.run(name, {"FAULT_CALL": call, **fault})
     return case, run, complaint(family, run, call, error)
 
 
 def described(case):
     family, call, n, error, lasts = case
-    what = os.strerror(error) if error != SHORT else "half a transfer"
+    what = WORDS.get(error) or os.strerror(error)
     return f"{family.name}: {call} {n}{' and all later' if lasts == '1' else ''}: {what}"
 
 
@@ -197,18 +212,19 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args()
     options.calls = OF_FILES if options.calls == "files" else options.calls.split(",")
-    failed = runs = ends = 0
+    failed = runs = borne = 0
     with tempfile.TemporaryDirectory(prefix="faults.") as options.work, \
             concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for name in options.family.split(","):
             family = Family(name, options)
             for case, run, wrong in pool.map(try_case, cases_of(family, options)):
                 runs += 1
-                ends += run.code == 0
+                borne += run.code == 0
                 if wrong:
                     failed += 1
                     print(f"{described(case)}: {wrong}\n{run.text[-600:]}", flush=True)
-    print(f"{runs} runs with a fault, {ends} of which could bear it, {failed} ended wrongly")
+            print(f"{name}: {runs} runs with a fault so far, {borne} of which bore it, "
+                  f"{failed} ended wrongly", flush=True)
     return 1 if failed else 0
 
 

@@ -3,7 +3,8 @@
 //
 //   FAULT_CALL     open, read, write, sync, rename, unlink, folder, size, close, memory or thread
 //   FAULT_AT       which of these calls fails: the n-th, from 1
-//   FAULT_ERROR    the number that errno gets; 0: the call transfers half of what it should
+//   FAULT_ERROR    the number that errno gets; 0: the call transfers half of what it should;
+//                  -1: it reads a flipped bit; -2: it reads nothing, as at the end of a file
 //   FAULT_LASTS    1: all later calls fail, too, as on a full disk
 //   FAULT_FOLDER   calls on files are counted only within this folder
 //   FAULT_COUNTS   a file that gets a line "CALL COUNT" for each kind when the program ends
@@ -40,6 +41,8 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kDescriptors = 4096;
+constexpr int kHalf = 0;
+constexpr int kNothing = -2;
 constexpr std::array<std::string_view, 11> kCalls = {"open",   "read",   "write",  "sync",
                                                      "rename", "unlink", "folder", "size",
                                                      "close",  "memory", "thread"};
@@ -67,6 +70,7 @@ long failing_at = 0;
 int failing_error = 0;
 bool fault_lasts = false;
 std::string_view folder;
+bool runs_in_folder = false;
 
 template <typename Function>
 Function* next(Function* /*type*/, const char* name) {
@@ -84,13 +88,13 @@ bool fails(Call call) {
   if (!counting) return false;
   const long n = ++counts[call];
   if (call != failing_call || n < failing_at || (n > failing_at && !fault_lasts)) return false;
-  if (failing_error != 0) errno = failing_error;
+  if (failing_error > 0) errno = failing_error;
   return true;
 }
 
 bool within_folder(const char* path) {
   if (folder.empty()) return true;
-  if (path[0] != '/') return true;  // the program runs in the folder
+  if (path[0] != '/') return runs_in_folder;
   return std::string_view(path).substr(0, folder.size()) == folder;
 }
 
@@ -107,10 +111,24 @@ int opened(int descriptor, int flags) {
   return descriptor;
 }
 
+/// A read that goes wrong as failing_error tells.
+template <typename Transfer>
+ssize_t read_wrongly(void* buffer, std::size_t bytes, const Transfer& transfer) {
+  if (failing_error > 0) return -1;
+  if (failing_error == kNothing) return 0;
+  if (failing_error == kHalf) return transfer(bytes > 1 ? bytes / 2 : bytes);
+  const ssize_t got = transfer(bytes);
+  if (got > 0) {
+    const auto at = static_cast<std::size_t>(failing_at) * 7919 % static_cast<std::size_t>(got);
+    static_cast<unsigned char*>(buffer)[at] ^= static_cast<unsigned char>(1U << (failing_at % 8));
+  }
+  return got;
+}
+
 /// Half the bytes, at least one, where a transfer is to be short; an error otherwise.
 template <typename Transfer>
 ssize_t fail_or_shorten(std::size_t bytes, const Transfer& transfer) {
-  if (failing_error != 0) return -1;
+  if (failing_error != kHalf) return -1;
   return transfer(bytes > 1 ? bytes / 2 : bytes);
 }
 
@@ -143,6 +161,8 @@ void begin_to_count() {
   failing_error = static_cast<int>(number("FAULT_ERROR"));
   fault_lasts = number("FAULT_LASTS") != 0;
   if (const char* const path = std::getenv("FAULT_FOLDER")) folder = path;
+  std::array<char, PATH_MAX> here{};
+  runs_in_folder = ::getcwd(here.data(), here.size()) != nullptr && folder == here.data();
   counting = true;
 }
 
@@ -204,15 +224,16 @@ FILE* fopen64(const char* path, const char* mode) { return fopen(path, mode); }
 
 ssize_t read(int file, void* buffer, std::size_t bytes) {
   if (within_folder(file) && fails(kRead)) {
-    return fail_or_shorten(bytes, [&](std::size_t some) { return NEXT(read)(file, buffer, some); });
+    return read_wrongly(buffer, bytes,
+                        [&](std::size_t some) { return NEXT(read)(file, buffer, some); });
   }
   return NEXT(read)(file, buffer, bytes);
 }
 
 ssize_t pread(int file, void* buffer, std::size_t bytes, off_t offset) {
   if (within_folder(file) && fails(kRead)) {
-    return fail_or_shorten(
-        bytes, [&](std::size_t some) { return NEXT(pread)(file, buffer, some, offset); });
+    return read_wrongly(buffer, bytes,
+                        [&](std::size_t some) { return NEXT(pread)(file, buffer, some, offset); });
   }
   return NEXT(pread)(file, buffer, bytes, offset);
 }
@@ -252,7 +273,7 @@ ssize_t writev(int file, const iovec* parts, int count) {
 
 std::size_t fwrite(const void* buffer, std::size_t size, std::size_t count, FILE* file) {
   // Only errors that last: short transfers are the business of stdio itself.
-  const bool is_hard = failing_error != 0 && failing_error != EINTR;
+  const bool is_hard = failing_error > 0 && failing_error != EINTR;
   if (within_folder(fileno(file)) && is_hard && fails(kWrite)) return 0;
   return NEXT(fwrite)(buffer, size, count, file);
 }

@@ -5,6 +5,8 @@ find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND AND NOT SPILLWAY_SANITIZE)
   add_library(fault_injector MODULE ${CMAKE_CURRENT_LIST_DIR}/fault_injector.cpp)
   target_link_libraries(fault_injector PRIVATE ${CMAKE_DL_LIBS})
+  set_target_properties(fault_injector PROPERTIES
+    CXX_VISIBILITY_PRESET default PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
   set(driver ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/fault_driver.py
     $<TARGET_FILE:spillway> $<TARGET_FILE:fault_injector> --jobs 2)
   function(spillway_fault_test name)

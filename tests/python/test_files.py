@@ -66,6 +66,7 @@ class Triangulate(InFolder):
             "--kernel cgal": {"kernel": "cgal"},
             "--no-trust-headers": {"trust_headers": False},
             "--skip-invalid": {"skip_invalid": True},
+            "--max-expansion 50": {"max_expansion": 50},
             "--skip-broken": {"skip_broken": True},
             "--salvage": {"salvage": True},
             "--output-format ply": {"output_format": "ply"},

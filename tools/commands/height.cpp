@@ -133,6 +133,7 @@ HeightReport measure(const HeightCommandOptions& options, PointSink& sink,
   of_ground.to_crs = points.to_crs;
   of_ground.z_multiplier = points.z_multiplier;
   of_ground.skip_invalid = points.skip_invalid;
+  of_ground.max_expansion = points.max_expansion;
   of_ground.salvage = points.salvage;
   of_ground.skip_broken = points.skip_broken;
   of_ground.keep_withheld = points.keep_withheld;

@@ -433,7 +433,8 @@ int run(const InfoOptions& options) {
     std::vector<std::string_view> filters(kInputOptionNames.begin(), kInputOptionNames.end());
     std::erase_if(filters, [](std::string_view name) {
       return name == "--input-format" || name == "--columns" || name == "--skip-lines" ||
-             name == "--separator" || name == "--decimal" || name == "--no-header";
+             name == "--separator" || name == "--decimal" || name == "--no-header" ||
+             name == "--max-expansion";
     });
     refuse_given(*options.app, filters, "with --fast, which reads no points");
   }

@@ -106,6 +106,12 @@ void add_input_options(CommandLine& app, InputOptions& options) {
   app.add_flag("--skip-invalid", options.skip_invalid,
                "Leave out rows of text, npy, PLY and PCD that are not points, and count them")
       .group(group);
+  take_whole_number(
+      app.add_option("--max-expansion", options.max_expansion,
+                     "Of compressed text, most bytes for each byte of the file; more is an error"),
+      1)
+      .value_name("N")
+      .group(kTableGroup);
   app.add_flag("--salvage", options.salvage,
                "Use the intact points of truncated or damaged LAS and LAZ files; count the rest")
       .group(group);
@@ -264,6 +270,7 @@ PointOptions point_options(const InputOptions& options, int dimension) {
   points.format = options.format;
   points.text = text_table(options.table);
   points.skip_invalid = options.skip_invalid;
+  points.max_expansion = options.max_expansion;
   points.salvage = options.salvage;
   points.skip_broken = options.skip_broken;
   points.keep_withheld = options.keep_withheld;

@@ -25,6 +25,7 @@ struct InputOptions {
   std::string to_crs;
   double z_multiplier = 1;
   bool skip_invalid = false;
+  std::uint64_t max_expansion = PointOptions{}.max_expansion;
   bool salvage = false;
   bool skip_broken = false;
   bool keep_withheld = false;
@@ -47,13 +48,13 @@ struct InputOptions {
 };
 
 /// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
-    "--skip-lines",   "--separator",   "--decimal",       "--no-header", "--input-format",
-    "--columns",      "--crs",         "--force-crs",     "--to-crs",    "--multiply-z",
-    "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",     "--keep-class",
-    "--drop-class",   "--returns",     "--where",         "--bounds",    "--z-range",
-    "--clip",         "--clip-buffer", "--clip-outside",  "--thin",      "--resolution",
-    "--salvage"};
+inline constexpr std::array<std::string_view, 27> kInputOptionNames = {
+    "--skip-lines",   "--separator",    "--decimal",       "--no-header", "--input-format",
+    "--columns",      "--crs",          "--force-crs",     "--to-crs",    "--multiply-z",
+    "--skip-invalid", "--skip-broken",  "--keep-withheld", "--every",     "--keep-class",
+    "--drop-class",   "--returns",      "--where",         "--bounds",    "--z-range",
+    "--clip",         "--clip-buffer",  "--clip-outside",  "--thin",      "--resolution",
+    "--salvage",      "--max-expansion"};
 
 /// --input-format, --columns, --crs, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);

@@ -120,10 +120,12 @@ class GeoTiff : public Raster {
     const CPLErr error = band(number).WriteBlock(
         static_cast<int>(tile_column), static_cast<int>(tile_row), const_cast<void*>(block));
     if (error != CE_None || gdal_failed()) fail(gdal_reason());
+    written_.push_back({number, tile_column, tile_row});
   }
 
   void finish() override {
     forget_gdal_errors();
+    check_tiles();
     file_.reset();  // closing writes what is left: only now can the disk be full
     if (gdal_failed()) fail(gdal_reason());
     if (options_.cloud_optimized) optimize();
@@ -136,6 +138,18 @@ class GeoTiff : public Raster {
 
   [[nodiscard]] GDALRasterBand& band(std::size_t number) {
     return *file_->GetRasterBand(static_cast<int>(number) + 1);
+  }
+
+  /// Throws Failure if a tile is not in the file: GDAL's threads that compress tiles leave out those
+  /// for which they get no memory, and no call tells so.
+  void check_tiles() {
+    file_->FlushCache(false);
+    for (const Tile& tile : written_) {
+      const std::string item = fmt::format("BLOCK_SIZE_{}_{}", tile.column, tile.row);
+      if (band(tile.band).GetMetadataItem(item.c_str(), "TIFF") == nullptr) {
+        fail("GDAL could not compress all pixels, most likely for want of memory");
+      }
+    }
   }
 
   [[nodiscard]] CPLStringList plain_options() const {
@@ -188,6 +202,13 @@ class GeoTiff : public Raster {
   const RasterOptions options_;
   const std::string plain_path_;
   const unsigned threads_;
+  struct Tile {
+    std::size_t band;
+    std::uint32_t column;
+    std::uint32_t row;
+  };
+
+  std::vector<Tile> written_;
   std::vector<std::uint8_t> bytes_;  ///< of a tile that is written
   GDALDatasetUniquePtr file_;
 };

@@ -141,6 +141,8 @@ struct PointHeader {
   std::uint64_t lost = 0;
 };
 
+inline constexpr std::uint64_t kNoExpansionLimit = std::numeric_limits<std::uint64_t>::max();
+
 struct PointReaderOptions {
   std::string format{};        ///< a name of point_format.h; empty: by extension, then first bytes
   bool keep_withheld = false;  ///< keep points flagged as withheld
@@ -153,6 +155,8 @@ struct PointReaderOptions {
   TextLayout text{};  ///< of text
   /// Of text, npy, PLY and PCD: leave out and count rows that are no points.
   bool skip_invalid = false;
+  /// Of compressed text: most bytes for each byte that is compressed.
+  std::uint64_t max_expansion = kNoExpansionLimit;
   /// Of LAS and LAZ: give the points that are whole of a file that is cut off or damaged, and those
   /// that its header does not count. Where lost ones are known of beforehand, PointHeader::lost has
   /// them, else blocks.

@@ -253,6 +253,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.reader.format = options.format;
   how.reader.text = text_layout_of(options.text);
   how.reader.skip_invalid = options.skip_invalid;
+  how.reader.max_expansion = options.max_expansion;
   how.reader.salvage = options.salvage;
   how.skip_broken = options.skip_broken;
   how.reader.keep_withheld = options.keep_withheld;

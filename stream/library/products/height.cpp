@@ -248,6 +248,7 @@ PointConversion copy_points(const std::vector<std::string>& paths, const PointOp
   all.format = options.format;
   all.text = options.text;
   all.skip_invalid = options.skip_invalid;
+  all.max_expansion = options.max_expansion;
   all.keep_withheld = true;
   all.crs = options.crs;
   all.foreign_crs = options.foreign_crs;

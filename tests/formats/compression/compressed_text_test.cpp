@@ -18,6 +18,7 @@
 namespace spillway::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// A frame as the lz4 tool makes it, with a checksum at its end.
@@ -106,6 +107,24 @@ TEST_P(CompressedText, FlippedBits) {
       EXPECT_THAT(error.what(), HasSubstr(name_));
     }
   }
+}
+
+/// 80 MiB that compress as well as anything does.
+const std::string& hollow_text() {
+  static const std::string text = [] {
+    const std::string line = "#" + std::string(8190, ' ') + "\n";
+    std::string all;
+    for (int i = 0; i < 10 << 10; ++i) all += line;
+    return all + "1 2 3\n";
+  }();
+  return text;
+}
+
+TEST_P(CompressedText, WhatExpandsWithoutEndIsAnError) {
+  const std::string bomb = compressed(hollow_text(), extension_);
+  EXPECT_THAT(error_of_content(name_, bomb, {.max_expansion = 20}),
+              AllOf(HasSubstr("expands to more than 20 times its size"), HasSubstr("byte")));
+  EXPECT_EQ(read_content(name_, bomb).points.size(), 1U);
 }
 
 TEST_P(CompressedText, Empty) {

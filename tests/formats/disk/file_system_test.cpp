@@ -26,6 +26,7 @@ using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+using ::testing::ThrowsMessage;
 
 class Disk : public ::testing::Test {
  protected:
@@ -221,6 +222,38 @@ TEST_F(Disk, ReadsAtAnyByteBesideWhatIsReadInOrder) {
   EXPECT_EQ(source.read_at(20, bytes), 0U);
   EXPECT_EQ(source.read(bytes), 3U);
   EXPECT_EQ(buffer, "345");
+}
+
+TEST_F(Disk, AFileThatIsCutOffOrGrowsWhileItIsReadIsAnError) {
+  std::string buffer(8, ' ');
+  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer));
+  for (const std::string& now : {"01234", "0123456789ab"}) {
+    put_content(path("a"), "0123456789");
+    const auto file = disk().open(path("a"));
+    put_content(path("a"), now);
+    const auto read_to_the_end = [&] {
+      while (file->read(bytes) > 0) {
+      }
+    };
+    EXPECT_THAT(read_to_the_end,
+                ThrowsMessage<BadInput>(AllOf(HasSubstr("had 10 bytes when it was opened"),
+                                              HasSubstr(fmt::format("now has {}", now.size())))));
+  }
+}
+
+TEST_F(Disk, AFileThatIsRemovedWhileItIsReadIsReadToItsEnd) {
+  put_content(path("a"), "0123456789");
+  const auto file = disk().open(path("a"));
+  fs::remove(path("a"));
+  std::string buffer(20, ' ');
+  EXPECT_EQ(file->read(std::as_writable_bytes(std::span(buffer))), 10U);
+}
+
+TEST_F(Disk, OutputsThatAreKeptFollowNoLinks) {
+  fs::create_symlink("elsewhere", path("a.ABCDEF.part"));
+  const auto kept = keep_outputs("ABCDEF");
+  EXPECT_THROW(static_cast<void>(kept->create(path("a"))), SystemRefusal);
+  EXPECT_FALSE(fs::exists(path("elsewhere")));
 }
 
 TEST_F(Disk, FillsTheBufferFromAPipe) {

@@ -43,6 +43,24 @@ TEST_F(KeptScratch, FilesThatNobodyNeedsStayUntilTheyAreReleased) {
   EXPECT_FALSE(fs::exists(name));
 }
 
+TEST_F(KeptScratch, FollowsNoLinksThatSomebodyHasPutThere) {
+  fs::create_directory(parent_ / "elsewhere");
+  fs::create_symlink("elsewhere", path());
+  EXPECT_THROW(KeptScratchFolder(path(), std::nullopt), SystemRefusal);
+  fs::remove(path());
+  KeptScratchFolder folder(path(), std::nullopt);
+  fs::create_symlink("../elsewhere/file", parent_ / "scratch" / "tile-1");
+  EXPECT_THROW(static_cast<void>(folder.create("tile")), SystemRefusal);
+  EXPECT_TRUE(fs::is_empty(parent_ / "elsewhere"));
+}
+
+TEST_F(KeptScratch, OthersCannotReadIt) {
+  KeptScratchFolder folder(path(), std::nullopt);
+  const auto file = folder.create("tile");
+  EXPECT_EQ(fs::status(path()).permissions(), fs::perms::owner_all);
+  EXPECT_EQ(fs::status(file->name()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(KeptScratch, OutlivesItsFolder) {
   std::string name;
   {
