@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -38,6 +39,21 @@ void StateReader::bytes(void* bytes, std::size_t size) {
     to += some;
     size -= some;
   }
+}
+
+void StateReader::check_size(std::uint64_t elements) const {
+  const std::uint64_t in_memory = block_.size() - taken_;
+  const std::optional<std::uint64_t> size = file_->size();
+  if (!size) return;
+  const std::uint64_t behind = *size - std::min(*size, block_begin_);
+  if (elements > in_memory && (elements - in_memory) / kLargestRatio > behind) {
+    fail("the state ends early");
+  }
+}
+
+bool StateReader::truth_of(unsigned char byte) const {
+  if (byte > 1) fail("a value is neither true nor false");
+  return byte == 1;
 }
 
 void StateReader::section(std::string_view name) {

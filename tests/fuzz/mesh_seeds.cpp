@@ -26,9 +26,9 @@ Mesh tetrahedron() {
   return mesh;
 }
 
-Mesh with_lattice(Mesh mesh) {
+Mesh with_lattice(Mesh mesh, const MeshFormat& format) {
   mesh.header.lattice = IntegerLattice{{0.5, 0.5, 0.5}, {0, 0, 0}};
-  mesh.header.crs = "EPSG:25832";
+  if (!format.reads_crs) mesh.header.crs = "EPSG:25832";
   return mesh;
 }
 
@@ -42,7 +42,7 @@ Mesh repeated(Mesh mesh) {
 
 /// A mesh with all that the format holds, besides plain ones.
 std::vector<Mesh> meshes_for(const MeshFormat& format) {
-  std::vector<Mesh> meshes = {square(), with_lattice(square())};
+  std::vector<Mesh> meshes = {square(), with_lattice(square(), format)};
   if (format.most_dimension == 3) meshes.push_back(tetrahedron());
   if (format.holds_input_index) {
     meshes.push_back(square());
@@ -70,6 +70,16 @@ std::vector<StreamedMesh> streams_for(const MeshFormat& format) {
     if (format.holds_input_index) add_input_index(meshes.back());
     if (format.held_attributes == HeldAttributes::kAll) {
       add_attributes(meshes.back(), scaled_attributes(), 3, 100);
+    }
+  }
+  if (format.holds_offsets) {
+    meshes.push_back(strip(2, 12, 5));
+    meshes.back().header.periodic =
+        PeriodicBox{.box = {{0, 0, 0}, {1e6, 1e7, 0}}, .periodic = {true, true, false}};
+    leave_lattice(meshes.back());
+    for (MeshStreamBlock& block : meshes.back().blocks) {
+      block.offsets.assign(block.corners.size(), kNoOffset);
+      block.offsets[1] = corner_offset(std::array{1, 0, 0});
     }
   }
   return meshes;

@@ -136,6 +136,20 @@ TEST_F(State, ThatIsCutShortAnywhereIsRefused) {
   }
 }
 
+TEST_F(State, AsksForNoMemoryByASizeAlone) {
+  std::uint64_t size = std::uint64_t{1} << 60;
+  write(size);
+  EXPECT_THAT(error_of_reading<std::vector<double>>(), HasSubstr("the state ends early"));
+  EXPECT_THAT(error_of_reading<std::vector<bool>>(), HasSubstr("the state ends early"));
+  EXPECT_THAT(error_of_reading<std::string>(), HasSubstr("the state ends early"));
+}
+
+TEST_F(State, HasNoTruthButTrueAndFalse) {
+  unsigned char neither = 2;
+  write(neither);
+  EXPECT_THAT(error_of_reading<bool>(), HasSubstr("neither true nor false"));
+}
+
 TEST_F(State, IsRefusedByAnotherStageAndWithBytesLeft) {
   Whole whole;
   write(whole);
