@@ -158,10 +158,11 @@ void read_compressed(std::string_view bytes) {
 }
 
 std::vector<std::string> compressed_block_seeds() {
-  const std::string head("\x20\0", 2);
-  return {
-      std::string(1, '\0') + head + std::string("\x78\x9c\x63\x60\x80\x03\x00\x00\x20\x00\x01", 11),
-      std::string(1, '\1') + head + std::string("\x1f\0\1\0\4\x50\0\0\0\0\0", 11)};
+  const std::string size("\x20\0", 2);
+  const std::string content = "0123012301230123" + std::string(16, '\0');
+  return {std::string(1, '\0') + size + zlib_compressed(content),
+          std::string(1, '\1') + size + lz4_compressed_block(content),
+          std::string(1, '\2') + size + xz_compressed(content)};
 }
 
 /// Keys, then doubles, then text: a fuzzer finds out how long each is.

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <initializer_list>
+
 #include "formats/bytes/bytes.h"
 #include "tests/formats/point_test_helpers.h"
-#include "tests/formats/points/npy/npy_bytes.h"
 #include "tests/fuzz/compressed_seeds.h"
 #include "tests/fuzz/seeds.h"
 
@@ -95,6 +97,35 @@ constexpr const char* kBase64Vtu = R"(<?xml version="1.0"?>
 </Piece></UnstructuredGrid></VTKFile>
 )";
 
+/// A triangle in appended arrays, each a compressed block with its sizes before it.
+std::string compressed_vtu(const char* compressor, std::string (*compress)(const std::string&)) {
+  const std::string contents[] = {floats({0, 0, 0, 1, 0, 0, 0, 1, 0}),
+                                  bytes_of(std::array{0, 1, 2}), bytes_of(3), "\5"};
+  std::string appended;
+  std::array<std::size_t, 4> begins{};
+  for (std::size_t i = 0; i < begins.size(); ++i) {
+    begins[i] = appended.size();
+    const std::string block = compress(contents[i]);
+    const auto size = static_cast<std::uint32_t>(contents[i].size());
+    appended += bytes_of(std::array{1U, size, 0U, static_cast<std::uint32_t>(block.size())});
+    appended += block;
+  }
+  const auto array = [&](const char* type, const char* what, std::size_t i) {
+    return fmt::format("<DataArray type=\"{}\" {} format=\"appended\" offset=\"{}\"/>\n", type,
+                       what, begins.at(i));
+  };
+  return fmt::format(
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+             "byte_order=\"LittleEndian\" header_type=\"UInt32\" compressor=\"{}\">\n"
+             "<UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\">\n<Points>",
+             compressor) +
+         array("Float32", "NumberOfComponents=\"3\"", 0) + "</Points><Cells>" +
+         array("Int32", "Name=\"connectivity\"", 1) + array("Int32", "Name=\"offsets\"", 2) +
+         array("UInt8", "Name=\"types\"", 3) +
+         "</Cells></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" + appended +
+         "</AppendedData></VTKFile>\n";
+}
+
 constexpr const char* kPolygons = "v 0 0 1\nv 1 0 2\nv 1 1 0\nv 0 1 3\nv 2 2 2\n";
 
 constexpr const char* kLandXml = R"(<?xml version="1.0"?>
@@ -116,7 +147,11 @@ std::vector<std::string> foreign_points(std::string_view format) {
 }
 
 std::vector<std::string> foreign_meshes(std::string_view format) {
-  if (format == "vtu") return {kVtu, kBase64Vtu};
+  if (format == "vtu") {
+    return {kVtu, kBase64Vtu, compressed_vtu("vtkZLibDataCompressor", zlib_compressed),
+            compressed_vtu("vtkLZ4DataCompressor", lz4_compressed_block),
+            compressed_vtu("vtkLZMADataCompressor", xz_compressed)};
+  }
   if (format == "landxml") return {kLandXml};
   if (format == "obj") {
     return {std::string(kPolygons) + "vt 0 0\nf 1 2/1 3//1 4\nf -1 -2 -3\n# c\ng a \\\nb\n"};
