@@ -32,7 +32,7 @@ std::string StateReader::with_remedy(const BadInput& error) const {
 void StateReader::bytes(void* bytes, std::size_t size) {
   auto* to = static_cast<std::byte*>(bytes);
   while (size > 0) {
-    if (taken_ == block_.size()) take_block();
+    while (taken_ == block_.size()) take_block();
     const std::size_t some = std::min(size, block_.size() - taken_);
     std::memcpy(to, block_.data() + taken_, some);
     taken_ += some;

@@ -100,7 +100,7 @@ struct SomeState {
   std::vector<double> numbers = {1, 2, 3};
   std::vector<bool> flags = {true, false};
   std::vector<std::vector<StatePart>> parts = {{{1, "one"}, {2, ""}}, {}};
-  std::optional<StatePart> maybe = StatePart{3, "three"};
+  std::optional<double> maybe;
   std::shared_ptr<const StatePart> shared;
   template <typename State>
   void state(State& state) {
@@ -139,6 +139,7 @@ std::vector<std::string> state_seeds() {
   std::string bytes;
   StateWriter writer(std::make_unique<StateBytes>(bytes));
   SomeState state;
+  state.maybe = 0.5;
   state.shared = std::make_shared<StatePart>();
   writer(state);
   writer.finish();
