@@ -21,6 +21,7 @@ spillway_test_program(fuzz
   fuzz/program.cpp
   fuzz/target.cpp
   fuzz/text_targets.cpp
+  fuzz/zstd_window.cpp
   ${fuzz_main}
   ../stream/source/condition/condition.cpp
   ../stream/source/condition/condition_parser.cpp

@@ -12,6 +12,7 @@
 #include "stream/source/condition/condition.h"
 #include "tests/faulty_file_system.h"
 #include "tests/fuzz/target.h"
+#include "tests/fuzz/zstd_window.h"
 #include "tools/batch/job_list.h"
 #include "tools/options/input_options.h"
 #include "tools/options/table_options.h"
@@ -86,7 +87,7 @@ void read_value(std::string_view text) {
 void read_table(std::string_view bytes) {
   constexpr std::string_view kSeparators("\0,;\t ", 5);
   constexpr std::string_view kDecimals("\0.,", 3);
-  if (bytes.size() < 3) return;
+  if (bytes.size() < 3 || has_large_zstd_window(bytes)) return;
   const auto option = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   PointReaderOptions options;
   options.format = "text";
