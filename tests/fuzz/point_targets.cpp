@@ -80,6 +80,16 @@ void read_in_many_ways(const PointFormat& format, std::string_view bytes) {
     // Some are not read from pipes at all.
   }
   files.seekable = files.read_anywhere = true;
+  if (format.has_levels) {
+    try {
+      read_points(files, path,
+                  {.format = std::string(format.name),
+                   .bounds = Box<3>{{5e5, 4e6, -1e9}, {5e5 + 30, 4e6 + 50, 1e9}},
+                   .resolution = 2});
+    } catch (const Failure&) {
+      // As above.
+    }
+  }
   read_points(files, path, {.format = std::string(format.name), .metadata = true});
 }
 
