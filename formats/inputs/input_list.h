@@ -27,8 +27,8 @@ std::vector<std::string> expand_paths(
     const std::vector<std::string>& arguments,
     const std::function<void(std::string_view)>& notice = nullptr);
 
-/// The names, folders and patterns that a list has, a line each, as they stand there. Throws Failure
-/// for what cannot be in a list.
+/// The names, folders and patterns that a list has, a line each, as they stand there. Throws
+/// Failure for what cannot be in a list.
 std::vector<std::string> names_in_list(InputFile& list);
 
 }  // namespace spillway::formats

@@ -170,8 +170,8 @@ std::vector<std::string> compressed_block_seeds() {
 void read_keys(std::string_view bytes) {
   if (bytes.empty()) return;
   GeotiffKeys keys;
-  const std::size_t parts =
-      std::min<std::size_t>(bytes.size() - 1, 8U * static_cast<unsigned char>(bytes[0]));
+  const std::size_t parts = std::min<std::size_t>(
+      bytes.size() - 1, std::size_t{8} * static_cast<unsigned char>(bytes[0]));
   const auto some = [&](std::size_t begin, std::size_t size) {
     const std::string_view part = bytes.substr(begin, size);
     const auto all = std::as_bytes(std::span(part));

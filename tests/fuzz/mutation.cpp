@@ -1,5 +1,7 @@
 #include "tests/fuzz/mutation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -91,7 +93,8 @@ std::vector<std::string> dictionary_words(const std::string& path) {
     const std::size_t begin = line.find('"');
     const std::size_t end = line.rfind('"');
     if (line.empty() || line.front() == '#') continue;
-    if (begin == line.npos || end == begin) throw std::runtime_error(path + ": no word: " + line);
+    if (begin == line.npos || end == begin)
+      throw std::runtime_error(fmt::format("{}: no word: {}", path, line));
     words.push_back(unquoted(line, begin + 1, end));
   }
   return words;

@@ -18,6 +18,7 @@
 #include "tests/fuzz/target.h"
 
 // Of the sanitizers, where they are.
+// NOLINTNEXTLINE(bugprone-reserved-identifier, readability-identifier-naming)
 extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*)());
 
 namespace {

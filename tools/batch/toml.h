@@ -1,7 +1,7 @@
 #pragma once
-// toml++ for texts that may be anything. Its version 3.3 promises the compiler what such texts do not
-// keep: that no letter from U+00A1 on stands outside of quotes, and that what it is going to refuse as
-// a key is one. Here both are refused as it says.
+// toml++ for texts that may be anything. Its version 3.3 promises the compiler what such texts do
+// not keep: that no letter from U+00A1 on stands outside of quotes, and that what it is going to
+// refuse as a key is one. Here both are refused as it says.
 
 #include <toml++/impl/preprocessor.h>
 
