@@ -65,7 +65,8 @@ std::vector<std::string> npy_arrays() {
 std::vector<std::string> texts() {
   const std::string rows = "id,x,y,z\n# c\n\"a\",1.5,-2e3,+3\r\n\"b\",4,5,6\n";
   std::vector<std::string> all = {rows, "Punkt;Rechts;Hoch\n1;3,5;4,25\n2;1000,5;2\n",
-                                  "1 2 3\n4 5 6 7\n", "1\t2\t3\n", "2\n1 2 3 4\n5 6 7 8\n"};
+                                  "1 2 3\n4 5 6 7\n", std::string("\xef\xbb\xbf") + "1\t2\t3\n",
+                                  "2\n1 2 3 4\n5 6 7 8\n"};
   for (const std::string& packed : compressed_in_all_ways(rows)) all.push_back(packed);
   return all;
 }
