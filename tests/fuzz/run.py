@@ -74,7 +74,7 @@ def main():
     parser.add_argument("targets", nargs="*")
     parser.add_argument("--minutes", type=float, default=1, help="for each target (default: %(default)s)")
     parser.add_argument("--jobs", type=int, default=1, help="targets at a time (default: %(default)s)")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     options.program = options.program.resolve()
     options.folder = options.folder.resolve()
     targets = options.targets or subprocess.run([options.program, "--list"], capture_output=True, text=True,
