@@ -13,6 +13,7 @@ preset=${1:-release}
 shift || true
 
 tools/install_packages.sh test
+[[ $preset != fuzz ]] || tools/install_packages.sh fuzz
 
 jobs=$(nproc)
 options=(-DSPILLWAY_TESTS=ON)

@@ -20,9 +20,6 @@ constexpr std::size_t kStoredSizeAt = 8;
 constexpr std::size_t kCompressedAt = 12;
 constexpr std::size_t kChecksumAt = 16;
 
-// LZ4 makes at most this many bytes of one.
-constexpr std::uint64_t kLargestRatio = 255;
-
 void encode_fields(const BlockHead& head, std::byte* bytes) {
   store(bytes + kKindAt, head.kind);
   store(bytes + kContentSizeAt, head.content_size);

@@ -26,6 +26,9 @@ inline constexpr std::size_t kBlockHeadSize = 24;
 /// The largest content of one block; what claims more is corrupt.
 inline constexpr std::size_t kLargestBlock = std::size_t{256} << 20;
 
+/// LZ4 makes at most this many bytes of one.
+inline constexpr std::uint64_t kLargestRatio = 255;
+
 /// Appends a block, head and stored bytes, to `out`.
 void append_block(std::vector<std::byte>& out, std::uint32_t kind,
                   std::span<const std::byte> content);

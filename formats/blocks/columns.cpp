@@ -109,7 +109,7 @@ void encode_chunk(const typename Codec::Value* values, std::size_t count, std::b
                   std::size_t plane_size) {
   std::array<Word<kWidth>, kChunk> words;
   const auto difference = [values](std::size_t k) {
-    return zigzag(Codec::key(values[k]) - Codec::key(values[k - 1]));
+    return zigzag(Codec::key(values[k]) - Codec::key(*(values + k - 1)));
   };
   if (count == kChunk) {
     for (std::size_t k = 0; k < kChunk; ++k) words[k] = static_cast<Word<kWidth>>(difference(k));

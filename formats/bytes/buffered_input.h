@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "formats/bytes/input_bytes.h"
 
@@ -24,14 +24,14 @@ class BufferedInput {
   const std::byte* take(std::size_t size) {
     if (end_ - begin_ < size && !refill(size)) return nullptr;
     begin_ += size;
-    return buffer_.data() + begin_ - size;
+    return buffer_.get() + begin_ - size;
   }
 
   /// What is in memory of the bytes that come next: some, unless the file ends here. Valid until
   /// the next call.
   std::span<const std::byte> ahead() {
     if (begin_ == end_) refill(1);
-    return {buffer_.data() + begin_, end_ - begin_};
+    return {buffer_.get() + begin_, end_ - begin_};
   }
 
   /// Drops bytes; false if the file ends before.
@@ -54,7 +54,9 @@ class BufferedInput {
   bool refill(std::size_t size);
 
   InputBytes& source_;
-  std::vector<std::byte> buffer_;
+  std::size_t buffer_size_;
+  // Not cleared: what is never filled takes no memory.
+  std::unique_ptr<std::byte[]> buffer_;
   std::size_t begin_ = 0;  // the bytes not yet given out are [begin_, end_)
   std::size_t end_ = 0;
 };

@@ -21,7 +21,7 @@ bool LineReader::extend(std::string_view& line) {
   const std::size_t before = position() - line_begin_;
   begin_ -= before;
   if (!read_line(line, before)) {
-    line = {buffer_.data() + begin_, before};
+    line = {buffer_.get() + begin_, before};
     if (line.ends_with('\n')) line.remove_suffix(1);
     begin_ += before;
     return false;
@@ -34,7 +34,7 @@ bool LineReader::read_line(std::string_view& line, std::size_t searched) {
   const std::size_t before = searched;
   const char* line_end = nullptr;
   while (true) {
-    const char* from = buffer_.data() + begin_ + searched;
+    const char* from = buffer_.get() + begin_ + searched;
     const std::size_t unsearched = end_ - begin_ - searched;
     line_end = static_cast<const char*>(std::memchr(from, '\n', unsearched));
     if (line_end != nullptr) break;
@@ -43,7 +43,7 @@ bool LineReader::read_line(std::string_view& line, std::size_t searched) {
   }
   if (line_end == nullptr && begin_ + before == end_) return false;
   line_begin_ = position();
-  const char* const start = buffer_.data() + begin_;
+  const char* const start = buffer_.get() + begin_;
   const std::size_t length = line_end != nullptr ? line_end - start : end_ - begin_;
   begin_ += length + (line_end != nullptr ? 1 : 0);
   line = {start, length};
@@ -81,11 +81,11 @@ std::string LineReader::name_of(const FilePlace& line) {
 }
 
 bool LineReader::refill() {
-  std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+  std::memmove(buffer_.get(), buffer_.get() + begin_, end_ - begin_);
   end_ -= begin_;
   buffer_begin_ += begin_;
   begin_ = 0;
-  const std::span<char> space = std::span(buffer_).subspan(end_);
+  const std::span<char> space = std::span(buffer_.get(), kBufferSize).subspan(end_);
   if (space.empty()) {
     const bool is_extended = number_ > 0 && position() == line_begin_;
     const FilePlace line =

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "formats/disk/file_system.h"
 #include "src/error.h"
@@ -20,7 +20,7 @@ class LineReader {
   static constexpr std::uint64_t kLongestGap = std::uint64_t{16} << 20;
 
   /// `file` must outlive the reader.
-  explicit LineReader(InputFile& file) : file_(file), buffer_(kLongestLine + 2) {}
+  explicit LineReader(InputFile& file) : file_(file) {}
 
   /// Sets `line` to the next one without its end, valid until the next call; false at the end.
   bool next(std::string_view& line);
@@ -34,7 +34,7 @@ class LineReader {
 
   /// What has been read of the file after that line: most of the first MiB once next() has given
   /// the first line. Valid until the next call.
-  [[nodiscard]] std::string_view unread() const { return {buffer_.data() + begin_, end_ - begin_}; }
+  [[nodiscard]] std::string_view unread() const { return {buffer_.get() + begin_, end_ - begin_}; }
 
   /// Says that the line which next() gave last holds nothing, so that input of nothing else comes
   /// to an end: throws Failure if more than kLongestGap bytes of such lines have followed one
@@ -74,7 +74,9 @@ class LineReader {
   bool refill();
 
   InputFile& file_;
-  std::vector<char> buffer_;
+  static constexpr std::size_t kBufferSize = kLongestLine + 2;
+  // Not cleared: what is never filled takes no memory.
+  std::unique_ptr<char[]> buffer_ = std::make_unique_for_overwrite<char[]>(kBufferSize);
   std::size_t begin_ = 0;  // the unread bytes are [begin_, end_)
   std::size_t end_ = 0;
   std::uint64_t buffer_begin_ = 0;  // byte of the file where the buffer begins

@@ -102,19 +102,9 @@ void append_list(const std::string& list, Found& found) {
         list, ENOENT);
   }
   const auto file = disk().open(list);
-  LineReader lines(*file);
   const fs::path folder = list == "-" ? fs::path() : fs::path(list).parent_path();
   const std::size_t before = found.files.size();
-  for (std::string_view line; lines.next(line);) {
-    const std::string_view name = trimmed(line);
-    if (name.empty() || name.front() == '#') continue;
-    if (name == "-" || name.front() == '@') {
-      throw BadInput({.file = file->name(), .place = at_line(lines.number())},
-                     fmt::format("a list has names of files, folders and patterns, but this is {}",
-                                 quoted(name)));
-    }
-    append((folder / name).string(), found);
-  }
+  for (const std::string& name : names_in_list(*file)) append((folder / name).string(), found);
   if (found.files.size() == before) throw BadInput(file->name(), "the list is empty");
 }
 
@@ -123,6 +113,22 @@ void append_list(const std::string& list, Found& found) {
 bool names_several(const std::string& argument) {
   std::error_code unknown;
   return is_list(argument) || is_pattern(argument) || fs::is_directory(argument, unknown);
+}
+
+std::vector<std::string> names_in_list(InputFile& list) {
+  std::vector<std::string> names;
+  LineReader lines(list);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view name = trimmed(line);
+    if (name.empty() || name.front() == '#') continue;
+    if (name == "-" || name.front() == '@') {
+      throw BadInput({.file = list.name(), .place = at_line(lines.number())},
+                     fmt::format("a list has names of files, folders and patterns, but this is {}",
+                                 quoted(name)));
+    }
+    names.emplace_back(name);
+  }
+  return names;
 }
 
 std::vector<std::string> expand_paths(const std::vector<std::string>& arguments,

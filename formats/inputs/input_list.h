@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/disk/file_system.h"
 #include "src/rooms.h"
 
 namespace spillway::formats {
@@ -25,5 +26,9 @@ bool names_several(const std::string& argument);
 std::vector<std::string> expand_paths(
     const std::vector<std::string>& arguments,
     const std::function<void(std::string_view)>& notice = nullptr);
+
+/// The names, folders and patterns that a list has, a line each, as they stand there. Throws
+/// Failure for what cannot be in a list.
+std::vector<std::string> names_in_list(InputFile& list);
 
 }  // namespace spillway::formats

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -31,13 +32,28 @@ std::string StateReader::with_remedy(const BadInput& error) const {
 void StateReader::bytes(void* bytes, std::size_t size) {
   auto* to = static_cast<std::byte*>(bytes);
   while (size > 0) {
-    if (taken_ == block_.size()) take_block();
+    while (taken_ == block_.size()) take_block();
     const std::size_t some = std::min(size, block_.size() - taken_);
     std::memcpy(to, block_.data() + taken_, some);
     taken_ += some;
     to += some;
     size -= some;
   }
+}
+
+void StateReader::check_size(std::uint64_t elements) const {
+  const std::uint64_t in_memory = block_.size() - taken_;
+  const std::optional<std::uint64_t> size = file_->size();
+  if (!size) return;
+  const std::uint64_t behind = *size - std::min(*size, block_begin_);
+  if (elements > in_memory && (elements - in_memory) / kLargestRatio > behind) {
+    fail("the state ends early");
+  }
+}
+
+bool StateReader::truth_of(unsigned char byte) const {
+  if (byte > 1) fail("a value is neither true nor false");
+  return byte == 1;
 }
 
 void StateReader::section(std::string_view name) {

@@ -33,6 +33,10 @@ class StateReader {
     (transfer(*this, values), ...);
   }
   void bytes(void* bytes, std::size_t size);
+  /// Throws unless so many elements, of a byte or more each, can follow in the file.
+  void check_size(std::uint64_t elements) const;
+  /// What a byte that is 0 or 1 stands for.
+  [[nodiscard]] bool truth_of(unsigned char byte) const;
   void section(std::string_view name);
   void file(std::shared_ptr<ScratchFile>& file);
 

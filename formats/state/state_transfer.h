@@ -39,6 +39,13 @@ void transfer(State& state, std::atomic<T>& value) {
   value = plain;
 }
 
+template <typename State>
+void transfer(State& state, bool& value) {
+  auto byte = static_cast<unsigned char>(value);
+  transfer(state, byte);
+  if constexpr (State::kReads) value = state.truth_of(byte);
+}
+
 template <typename State, typename T>
 void transfer(State& state, std::optional<T>& value) {
   bool there = value.has_value();
@@ -50,10 +57,17 @@ void transfer(State& state, std::optional<T>& value) {
   if (there) transfer(state, *value);
 }
 
+/// The size of what follows, which is read only if the state can hold so many elements.
+template <typename State>
+std::uint64_t transfer_size(State& state, std::uint64_t size) {
+  transfer(state, size);
+  if constexpr (State::kReads) state.check_size(size);
+  return size;
+}
+
 template <typename State, typename T>
 void transfer(State& state, std::vector<T>& values) {
-  std::uint64_t size = values.size();
-  transfer(state, size);
+  const std::uint64_t size = transfer_size(state, values.size());
   if constexpr (State::kReads) {
     values.clear();
     values.resize(size);
@@ -73,8 +87,7 @@ void transfer(State& state, std::vector<T>& values) {
 
 template <typename State>
 void transfer(State& state, std::string& text) {
-  std::uint64_t size = text.size();
-  transfer(state, size);
+  const std::uint64_t size = transfer_size(state, text.size());
   if constexpr (State::kReads) text.resize(size);
   state.bytes(text.data(), size);
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -16,14 +15,15 @@
 #include "formats/bytes/whole_file.h"
 #include "formats/disk/extension.h"
 #include "formats/disk/file_system.h"
+#include "tools/batch/toml.h"
 #include "tools/options/former_names.h"
 #include "tools/report/usage_error.h"
 
 namespace spillway::command {
 namespace {
 
-std::string read_text(const std::string& path) {
-  InputBytes source(disk().open(path));
+std::string read_text(FileSystem& files, const std::string& path) {
+  InputBytes source(files.open(path));
   return std::string(as_text(read_whole(source)));
 }
 
@@ -45,8 +45,8 @@ Json json_of(const toml::node& node) {
   return nullptr;  // a date: refused like anything else that is no text, number or truth value
 }
 
-Json parse_list(const std::string& path) {
-  const std::string text = read_text(path);
+Json parse_list(FileSystem& files, const std::string& path) {
+  const std::string text = read_text(files, path);
   if (extension_of(path) == "json") {
     try {
       return parse_json(text);
@@ -65,11 +65,11 @@ Json parse_list(const std::string& path) {
 
 class ListReader {
  public:
-  explicit ListReader(const std::string& path)
-      : path_(path), folder_(std::filesystem::path(path).parent_path()) {}
+  ListReader(FileSystem& files, const std::string& path)
+      : files_(files), path_(path), folder_(std::filesystem::path(path).parent_path()) {}
 
   std::vector<Job> read(const std::vector<std::string>& to, const JobOptions& options) {
-    const Json list = parse_list(path_);
+    const Json list = parse_list(files_, path_);
     where_ = path_;
     expect_keys(list, {"to", "options", "buffer", "jobs"});
     Job defaults;
@@ -160,6 +160,7 @@ class ListReader {
     fail(fmt::format("\"{}\" is not a length: give a number of at least 0", key));
   }
 
+  FileSystem& files_;
   std::string path_;
   std::filesystem::path folder_;
   std::string where_;
@@ -194,9 +195,9 @@ bool is_job_list(const std::string& path) {
   return extension == "json" || extension == "toml";
 }
 
-std::vector<Job> read_job_list(const std::string& path, const std::vector<std::string>& to,
-                               const JobOptions& options) {
-  std::vector<Job> jobs = ListReader(path).read(to, options);
+std::vector<Job> read_job_list(FileSystem& files, const std::string& path,
+                               const std::vector<std::string>& to, const JobOptions& options) {
+  std::vector<Job> jobs = ListReader(files, path).read(to, options);
   check_jobs(jobs);
   return jobs;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/disk/file_system.h"
 #include "src/geometry/box.h"
 
 namespace spillway::command {
@@ -35,8 +36,8 @@ struct Job {
 /// the command line's options go before the list's, its `to` serves where the list has none.
 /// Relative paths are those of the list's folder. Throws Failure that names the list, the job and the
 /// key.
-std::vector<Job> read_job_list(const std::string& path, const std::vector<std::string>& to,
-                               const JobOptions& options);
+std::vector<Job> read_job_list(FileSystem& files, const std::string& path,
+                               const std::vector<std::string>& to, const JobOptions& options);
 
 /// One job for each file.
 std::vector<Job> jobs_of_files(const std::vector<std::string>& files,

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/disk/file_system.h"
 #include "formats/disk/scratch_folder.h"
 #include "formats/disk/unfinished_files.h"
 #include "src/distributed/ranks.h"
@@ -239,7 +240,7 @@ class Batch {
   [[nodiscard]] std::vector<Job> jobs_as_listed() {
     const auto passed_on = options_.passed_on();
     if (options_.sources.size() == 1 && is_job_list(options_.sources.front())) {
-      return read_job_list(options_.sources.front(), options_.to, passed_on);
+      return read_job_list(disk(), options_.sources.front(), options_.to, passed_on);
     }
     if (options_.to.empty()) throw UsageError("--to is missing: it names the outputs, like ply");
     const Context context({.warning = [this](std::string_view text) { progress_.say(text); }});

@@ -57,16 +57,6 @@ void warn_of_memory(const MemoryOptions& options, ProgressLine& progress) {
 
 }  // namespace
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 void add_memory_options(CommandLine& app, MemoryOptions& options) {
   take_parsed(
       app.add_option("--memory", options.limit,
@@ -191,14 +181,6 @@ ProgressLine make_progress(const ReportOptions& options, std::string_view output
     }
   }
   return {style, options.quiet, options.verbose};
-}
-
-std::optional<double> parse_number(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  double number = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = fault == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 Option take_whole_number(Option option, std::uint64_t least, std::uint64_t most) {

@@ -435,7 +435,7 @@ class LazReader : public PointReader {
       hand_out(raw, chunk);
       return;
     }
-    if (salvage_ && chunks_) {
+    if (salvage_) {
       MemoryBytes bytes_to_prove(raw.bytes);
       prove(chunk, bytes_to_prove);
     }

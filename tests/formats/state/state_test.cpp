@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "formats/blocks/block.h"
 #include "formats/disk/kept_scratch.h"
 #include "formats/disk/private_file.h"
+#include "formats/state/state_blocks.h"
 #include "formats/state/state_reader.h"
 #include "formats/state/state_writer.h"
 #include "src/error.h"
@@ -134,6 +136,32 @@ TEST_F(State, ThatIsCutShortAnywhereIsRefused) {
     fs::resize_file(path(), length);
     EXPECT_THAT(error_of_reading<std::string>(), HasSubstr(path())) << length << " bytes";
   }
+}
+
+TEST_F(State, AsksForNoMemoryByASizeAlone) {
+  std::uint64_t size = std::uint64_t{1} << 60;
+  write(size);
+  EXPECT_THAT(error_of_reading<std::vector<double>>(), HasSubstr("the state ends early"));
+  EXPECT_THAT(error_of_reading<std::vector<bool>>(), HasSubstr("the state ends early"));
+  EXPECT_THAT(error_of_reading<std::string>(), HasSubstr("the state ends early"));
+}
+
+TEST_F(State, MayHaveABlockWithNothingInIt) {
+  std::vector<std::byte> bytes;
+  append_block(bytes, kStateBlock, {});
+  append_block(bytes, kLastStateBlock, std::vector<std::byte>(1, std::byte{7}));
+  std::ofstream(path(), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  unsigned char value = 0;
+  read(value);
+  EXPECT_EQ(value, 7);
+}
+
+TEST_F(State, HasNoTruthButTrueAndFalse) {
+  unsigned char neither = 2;
+  write(neither);
+  EXPECT_THAT(error_of_reading<bool>(), HasSubstr("neither true nor false"));
 }
 
 TEST_F(State, IsRefusedByAnotherStageAndWithBytesLeft) {

@@ -182,6 +182,18 @@ TEST(LazSalvage, OfADamagedLargeChunkNoPointComes) {
   }
 }
 
+TEST(LazSalvage, OfADamagedLargeChunkInAPipeNoPointComes) {
+  LazFormat format = format_of(3, 263000);
+  format.point_format = 6;
+  LazFile file = make_laz_file(format, records_of(format, 300000));
+  EXPECT_EQ(read(file.bytes(), false).points.size(), 300000U);
+  std::string& chunk = file.chunks[0].bytes;
+  std::fill_n(chunk.begin() + 1000, 100000, '\xff');
+  const AllPoints all = read(file.bytes(), false);
+  EXPECT_EQ(all.points.size(), 0U);
+  EXPECT_EQ(all.lost, 300000U);
+}
+
 TEST(LazSalvage, PiecesOfADamagedFileAreReadInAnyOrder) {
   LazFile file = file_of(format_of(2));
   file.chunks[4].bytes.replace(40, 60, 60, '\xff');
