@@ -1,0 +1,161 @@
+"""Random cases: files of points, filters, options, ways in and out."""
+import numpy as np
+
+import families
+import filters
+import point_files
+
+FORMATS = ["spm", "spm", "npy", "ply", "ply-ascii", "obj", "off", "vtu", "sma", "landxml"]
+IN_SPACE = ["spm", "npy", "ply", "ply-ascii", "vtu"]
+OF_MORE = ["spm", "npy"]
+NO_PIPE = {"npy"}
+SURE_IN_4 = {"uniform", "normal", "bubbles", "utm", "haloes"}  # no ties, which CGAL breaks not
+
+
+class Case:
+    """All that a run depends on. The driver shrinks copies of it."""
+
+    def __init__(self, seed, dim, family):
+        self.seed = seed
+        self.dim = dim
+        self.family = family
+        self.inputs = []
+        self.filters = []
+        self.options = []      # lists of arguments, each of which may be left out
+        self.form = "npy"
+        self.pipe_in = False
+        self.pipe_out = False
+        self.ranks = 0         # 0: no mpirun
+        self.proves = False    # whether `check` is run, too
+
+    def copy(self):
+        other = Case(self.seed, self.dim, self.family)
+        other.__dict__.update(self.__dict__)
+        other.inputs = list(self.inputs)
+        return other
+
+    def points(self):
+        return sum(len(one.points) for one in self.inputs)
+
+    def option(self, name):
+        return next((option for option in self.options if option[0] == name), None)
+
+
+def log_uniform(rng, low, high):
+    return int(round(np.exp(rng.uniform(np.log(low), np.log(high + 0.5)))))
+
+
+def random_size(rng, dim, most):
+    largest = {2: most, 3: most / 4, 4: min(most / 40, 60)}[dim]
+    return log_uniform(rng, 1, largest if rng.random() < 0.2 else min(300, largest))
+
+
+def plain_inputs(rng, dim, points):
+    rows = points
+    if dim == 2 and rng.random() < 0.7:
+        z = rng.random(len(points)) if rng.random() < 0.5 else rng.integers(0, 5, len(points))
+        rows = np.hstack([points, z[:, None]])
+    known = [f for f in point_files.PLAIN
+             if not (rows.shape[1] == 2 and f in ("ply", "ply-ascii", "pcd", "pcd-ascii", "sorted-spp"))
+             and not (dim > 3 and f in ("npy-float32", "sorted-spp", "npy-columns"))]
+    if np.max(np.abs(rows), initial=0) > 3e38:
+        known = [f for f in known if f != "npy-float32"]
+    if dim > 3 and len(rows) < 20:  # a part of few rows may look like one point a column
+        known = [f for f in known if f not in ("npy", "npy-big")]
+    return [point_files.Input(str(rng.choice(known)), part) for part in parts_of(rng, rows)]
+
+
+def parts_of(rng, rows):
+    """One to four parts, by their order or by strips, as files of a survey are."""
+    count = int(rng.choice([1, 1, 1, 2, 4])) if len(rows) >= 12 else 1
+    if count > 1 and rng.random() < 0.5:
+        rows = rows[np.argsort(rows[:, int(rng.integers(0, 2))], kind="stable")]
+    return [part for part in np.array_split(rows, count) if len(part)]
+
+
+def lattice_inputs(rng, dim, points):
+    """Integers of 32 bits, in files of one lattice."""
+    rows = points
+    if dim == 2:
+        rows = np.hstack([points, rng.integers(-5, 50, (len(points), 1))])
+    scale = np.full(3, float(rng.choice([1, 0.01, 0.001, 0.25, 1e-7])))
+    offset = np.floor(rng.choice([0, 0, 100, 500000], 3)).astype(float)
+    whole = np.max(np.abs(rows), initial=0) < 2 ** 30
+    files = []
+    for part in parts_of(rng, rows):
+        steps = rng.integers(-4, 5, 3) * 100 if whole and rng.random() < 0.2 else np.zeros(3)
+        # Whole units: the same lattice, from another offset.
+        units = steps * (1 if scale[0] >= 0.001 else 0)
+        inner = part - np.rint(units / scale)
+        if np.max(np.abs(inner), initial=0) >= 2 ** 31 - 1:
+            units, inner = np.zeros(3), part
+        files.append(point_files.Input(str(rng.choice(point_files.LATTICE)), inner, scale,
+                                       offset + units, bool(rng.random() < 0.05)))
+    return files
+
+
+def random_inputs(rng, case, points):
+    name = case.family.split("+")[0]
+    integers = np.all(points == np.rint(points)) and np.max(np.abs(points), initial=0) < 2 ** 31
+    if case.dim < 4 and integers and (name in families.INTEGERS or rng.random() < 0.5):
+        inputs = lattice_inputs(rng, case.dim, points)
+        if rng.random() < 0.2:  # one file of doubles, so there is no common lattice
+            which = int(rng.integers(0, len(inputs)))
+            inputs[which] = point_files.Input("npy", inputs[which].world())
+        return inputs
+    return plain_inputs(rng, case.dim, points)
+
+
+def random_options(rng, case):
+    n = max(1, case.points())
+    chosen = []
+
+    def maybe(share, *arguments):
+        if rng.random() < share:
+            chosen.append([str(argument) for argument in arguments])
+
+    maybe(0.7, "--leaf-points", log_uniform(rng, 1, n))
+    maybe(0.7, "--tile-points", log_uniform(rng, max(1, n // 100), 2 * n))
+    if not case.ranks or rng.random() < 0.3:
+        maybe(0.6, "--threads", rng.integers(1, 5))
+    maybe(0.3, "--children", rng.choice([2, 3, 4, 8, 1024]))
+    maybe(0.3, "--division", rng.choice(["least-border", "longest", "cycling", "constant"]))
+    maybe(0.1, "--kernel", rng.choice(["spillway", "cgal"]) if case.dim < 4 else "spillway")
+    maybe(0.5, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
+    maybe(0.2, "--no-trust-headers")
+    if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
+        maybe(0.2, "--id")
+    if case.dim == 2 and all(one.world().shape[1] > 2 for one in case.inputs):
+        maybe(0.3, "--heights", rng.choice(["first", "lowest", "highest", "mean"]))
+    return chosen
+
+
+def random_case(seed, command, folder, kind="runs", most=20000):
+    rng = np.random.default_rng(seed)
+    dim = int(rng.choice([2, 2, 2, 2, 3, 3, 3, 4]))
+    size = random_size(rng, dim, most)
+    family, points = families.random_points(rng, command, dim, size, folder)
+    if dim == 4 and family not in SURE_IN_4:
+        family, points = "normal", rng.normal(size=(min(size, 60), 4))
+    if dim == 4:
+        points = points[np.sort(rng.permutation(len(points))[:60])]
+    case = Case(seed, dim, family)
+    case.inputs = random_inputs(rng, case, points)
+    if kind == "ranks":
+        case.ranks = int(rng.integers(1, 5))
+    world = np.vstack([one.world() for one in case.inputs]) if same_width(case) else None
+    offsets = {tuple(one.offset) for one in case.inputs if one.offset is not None}
+    if world is not None:
+        case.filters = filters.random_filters(rng, world, dim, len(offsets) < 2)
+    case.form = str(rng.choice({2: FORMATS, 3: IN_SPACE}.get(dim, OF_MORE)))
+    lies = any(one.lies and one.form in ("las", "laz") for one in case.inputs)
+    if len(case.inputs) == 1 and case.inputs[0].form not in point_files.NOT_PIPED and not lies:
+        case.pipe_in = bool(rng.random() < 0.2)
+    case.pipe_out = bool(case.form not in NO_PIPE and not lies and rng.random() < 0.2)
+    case.options = random_options(rng, case)
+    case.proves = bool(rng.random() < 0.4)
+    return case
+
+
+def same_width(case):
+    return len({one.world().shape[1] for one in case.inputs}) == 1
