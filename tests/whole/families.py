@@ -100,7 +100,7 @@ def clusters(rng, dim, n):
 
 
 def huge(rng, dim, n):
-    return (rng.random((n, dim)) - 0.5) * float(rng.choice([1e100, 1e150, 1e200, 1e300, 3.5e308]))
+    return (2 * rng.random((n, dim)) - 1) * float(rng.choice([1e100, 1e150, 1e200, 1e300, 1.79e308]))
 
 
 def subnormal(rng, dim, n):
@@ -157,6 +157,9 @@ GENERATED = ["uniform", "normal", "bubbles", "ellipsoid", "lines", "lattice", "c
              "duplicates", "collinear", "coplanar", "utm", "haloes", "terrain", "packing", "scan"]
 
 
+ONLY_IN_SPACE = {"haloes", "terrain", "packing", "scan"}  # and in the plane
+
+
 def padded(rng, points, dim):
     """As many coordinates as asked for, the further ones random."""
     more = dim - points.shape[1]
@@ -165,7 +168,7 @@ def padded(rng, points, dim):
 
 def generated(rng, command, dim, n, folder):
     """Points of a generator of the command: its name, and an array."""
-    names = GENERATED if dim < 4 else [f for f in GENERATED if f not in ("terrain", "packing", "scan")]
+    names = GENERATED if dim < 4 else [f for f in GENERATED if f not in ONLY_IN_SPACE]
     name = str(rng.choice(names))
     n = min(n, 150) if name == "lines" and dim > 2 else n
     path = f"{folder}/generated.npy"

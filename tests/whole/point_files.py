@@ -48,7 +48,9 @@ class Input:
         if self.scale is not None:
             write_lattice(self, command, name)
         elif self.form in ("spp", "sorted-spp"):
-            np.save("converted.npy", self.points)
+            with open("converted.npy", "wb") as file:
+                plain = Input("npy-structure" if self.points.shape[1] > 3 else "npy", self.points)
+                write_plain(plain, file)
             how = ["--sorted"] if self.form == "sorted-spp" else []
             convert(command, ["converted.npy", *how, "-o", name])
         else:
