@@ -47,7 +47,8 @@ def log_uniform(rng, low, high):
 
 def random_size(rng, dim, most):
     largest = {2: most, 3: most / 4, 4: min(most / 40, 60)}[dim]
-    return log_uniform(rng, 1, largest if rng.random() < 0.2 else min(300, largest))
+    least = 1 if rng.random() < 0.1 else 3 * dim
+    return log_uniform(rng, least, largest if rng.random() < 0.2 else min(300, largest))
 
 
 def plain_inputs(rng, dim, points):

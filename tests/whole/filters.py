@@ -105,7 +105,10 @@ def random_filters(rng, world, dim, exact):
         known.append(z_range)
     if dim == 2 and np.all(np.isfinite(world)) and np.max(np.abs(world)) < 1e12:
         known.append(thin)
-    return [make(rng, world, exact) for make in known if rng.random() < 1.3 / len(known)]
+    chosen = [make(rng, world, exact) for make in known if rng.random() < 1.3 / len(known)]
+    # Ranges of height without a common one are wrong usage.
+    boxes = [one for one in chosen if one.arguments[0].count(",") == 5]
+    return [one for one in chosen if not boxes or not one.arguments[0].startswith("--z-range")]
 
 
 def kept(filters, world, counts):

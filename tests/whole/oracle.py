@@ -55,7 +55,7 @@ def orientations(points, simplices, most_exact=2000):
         lengths = np.abs(edges).max(axis=2)
         value = np.linalg.det(edges)
         bound = 1e-10 * np.prod(lengths, axis=1)
-        sure = (np.abs(value) > bound) & (bound > 1e-200) & (bound < 1e200)
+        sure = (np.abs(value) > bound) & (lengths.min(axis=1) > 1e-60) & (lengths.max(axis=1) < 1e60)
     signs = np.where(sure, np.sign(value), 1).astype(int)
     for number in np.flatnonzero(~sure)[:most_exact]:
         signs[number] = exact_orientation(corners[number])
