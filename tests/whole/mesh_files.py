@@ -100,10 +100,11 @@ def sma_bytes(mesh):
     lines, name = [], {}
     for number, row in enumerate(mesh.simplices):
         for vertex in map(int, row):
-            if vertex not in name:
+            if vertex not in name and vertex < len(mesh.vertices):
                 name[vertex] = len(name) + 1
                 lines.append("v " + " ".join(repr(float(v)) for v in mesh.vertices[vertex]))
-        corners = [name[v] - len(name) - 1 if last[v] == number else name[v] for v in map(int, row)]
+        names = [name.get(v, len(mesh.vertices) + 1) for v in map(int, row)]
+        corners = [n - len(name) - 1 if last[int(v)] == number else n for v, n in zip(row, names)]
         lines.append("f " + " ".join(map(str, corners)))
     for vertex in range(len(mesh.vertices)):
         if vertex not in name:

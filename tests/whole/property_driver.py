@@ -27,7 +27,7 @@ except ImportError:
     sys.exit(SKIPPED)
 
 import cases
-import mutations
+import damaged_meshes
 import oracle
 import runs
 import shrink
@@ -48,7 +48,8 @@ class Driver:
         os.makedirs(f"{self.folder}/made", exist_ok=True)
         os.chdir(self.folder)
         if kind == "meshes":
-            self.counts += mutations.run(seed, self.binary, self.cgal, f"{self.folder}/case")
+            self.counts += damaged_meshes.run(seed, self.binary, self.cgal, f"{self.folder}/case",
+                                              self.options.most)
             return
         case = cases.random_case(seed, self.binary, f"{self.folder}/made", kind, self.options.most)
         try:

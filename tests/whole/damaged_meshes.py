@@ -1,0 +1,190 @@
+"""Makes a mesh, damages it, and asks `check` for its verdict, as a file and as a stream."""
+import collections
+import os
+import subprocess
+
+import numpy as np
+
+import families
+import mesh_files
+import mutations
+import oracle
+import runs
+from oracle import Failed
+
+FORMATS = ["npy", "ply", "ply-ascii", "obj", "sma"]
+IN_SPACE = ["npy", "ply", "ply-ascii"]
+
+
+class Damaged:
+    """A mesh, what was done to it, and the format it is written in."""
+
+    def __init__(self, seed, binary, folder, most):
+        rng = np.random.default_rng([seed, 1])
+        self.dim = int(rng.choice([2, 2, 3]))
+        largest = min(most, 20000 if self.dim == 2 else 2000) if rng.random() < 0.03 else 60
+        count = int(np.exp(rng.uniform(np.log(4), np.log(largest))))
+        self.family, points = families.random_points(rng, binary, self.dim, count, folder)
+        if self.dim == 2:
+            points = np.hstack([points, rng.integers(0, 9, (len(points), 1))])
+        np.save("points.npy", points)
+        self.points = points
+        self.mutation = ""
+        self.form = str(rng.choice(FORMATS if self.dim == 2 else IN_SPACE))
+        self.mesh = None
+        self.rng = rng
+
+    def make(self, binary):
+        """False if there is no mesh of these points."""
+        done = subprocess.run([binary, "triangulate", "points.npy", "-o", "right.npy", "-q", "--dim",
+                               str(self.dim), "--leaf-points", "10"], capture_output=True, text=True)
+        if done.returncode != 0:
+            if runs.NO_SIMPLEX.search(done.stderr):
+                return False
+            raise Failed(f"triangulate ends with {done.returncode}", done.stderr)
+        self.mesh = mesh_files.read_npy("right")
+        self.mesh.vertices = self.mesh.vertices.copy()
+        with np.errstate(all="ignore"):
+            for _ in range(2 if self.rng.random() < 0.1 else 1):
+                kind = mutations.MUTATIONS[self.rng.integers(0, len(mutations.MUTATIONS))]
+                if self.mesh.simplices.max(initial=-1) not in range(len(self.mesh.vertices)):
+                    break  # no simplices, or no such vertex
+                kind(self.rng, self.mesh, self.dim)
+                self.mutation += ("+" if self.mutation else "") + kind.__name__
+        return True
+
+
+def fault_of(mesh, dim, cgal):
+    """Why the mesh is not the canonical Delaunay triangulation of its vertices; "" if it is."""
+    vertices, simplices = mesh.vertices[:, :dim] + 0.0, mesh.simplices
+    if not np.all(np.isfinite(mesh.vertices)):
+        return "a coordinate is not finite"
+    if len(simplices) == 0:
+        return "no simplices"
+    if simplices.min() < 0 or simplices.max() >= len(vertices):
+        return "no such vertex"
+    if len(np.unique(simplices)) != len(vertices):
+        return "a vertex is not used"
+    points = np.unique(vertices, axis=0)
+    if len(points) != len(vertices):
+        return "equal vertices"
+    if any(len(set(row)) != dim + 1 for row in simplices.tolist()):
+        return "a simplex with a corner twice"
+    numbers = oracle.numbers_of(points, vertices)
+    found = oracle.sorted_rows(numbers[simplices])
+    if not np.array_equal(found, oracle.simplices_of(cgal, points)):
+        return "other simplices"
+    if np.any(oracle.orientations(points, numbers[simplices], len(simplices)) < 1):
+        return "a wrong orientation"
+    return ""
+
+
+def sure_of_any(mesh, dim, fault):
+    """Whether `check --any-delaunay` must refuse it, too: a fault that is not one of ties."""
+    if fault != "other simplices":
+        return True
+    if len(mesh.simplices) > 150 or len(mesh.vertices) > 150:
+        return False
+    vertices = mesh.vertices[:, :dim]
+    for row in mesh.simplices:
+        if oracle.exact_orientation(vertices[row]) <= 0:
+            return True
+        inside = (oracle.exact_in_sphere(vertices[row], query) > 0 for number, query
+                  in enumerate(vertices) if number not in row)
+        if any(inside):
+            return True
+    _, count = oracle.facets(mesh.simplices)
+    return bool(np.any(count > 2))
+
+
+def verdict(binary, arguments, stdin=None):
+    """Whether check proves it. All but a proof and a refusal is a finding."""
+    done = subprocess.run([binary, "check", *arguments, "-q"], stdin=stdin, capture_output=True,
+                          timeout=runs.SECONDS)
+    text = (done.stdout + done.stderr).decode(errors="replace")
+    if done.returncode not in (0, 1) or (done.returncode == 1 and not text.strip()):
+        raise Failed(f"check ends with {done.returncode}", text[-500:])
+    return done.returncode == 0, text[-300:]
+
+
+def expect(right, answer, how, why):
+    proved, text = answer
+    if proved and not right:
+        raise Failed("check accepts a wrong mesh", f"{how}: {why}; it says: {text}")
+    if not proved and right:
+        raise Failed("check refuses a right mesh", f"{how}: {text}")
+
+
+def piped(binary, path, *arguments):
+    with open(path, "rb") as file, subprocess.Popen(["cat"], stdin=file, stdout=subprocess.PIPE) as cat:
+        answer = verdict(binary, ["-", *arguments], cat.stdout)
+        cat.stdout.close()
+    return answer
+
+
+def check_all_ways(damaged, binary, cgal):
+    """The fault that the mesh has."""
+    mesh, form = damaged.mesh, damaged.form
+    fault = fault_of(mesh, damaged.dim, cgal)
+    path = mesh_files.write_mesh(mesh, "wrong", form)
+    expect(not fault, verdict(binary, [path, "--mesh-format", form]), f"{form} file", fault)
+    if fault and sure_of_any(mesh, damaged.dim, fault):
+        expect(False, verdict(binary, [path, "--any-delaunay"]), f"{form} file, any", fault)
+    elif not fault:
+        expect(True, verdict(binary, [path, "--any-delaunay"]), f"{form} file, any", fault)
+    if form != "npy":
+        expect(not fault, piped(binary, path, "--mesh-format", form), f"{form} stream", fault)
+    streams = ["spm", "sma"] if damaged.dim == 2 else ["spm"]
+    for stream in streams:
+        done = subprocess.run([binary, "convert", path, "-o", f"stream.{stream}", "-q"],
+                              capture_output=True, text=True)
+        if done.returncode not in (0, 1) or (done.returncode == 1 and not fault):
+            raise Failed(f"convert ends with {done.returncode}", done.stderr)
+        if done.returncode == 0:
+            answer = verdict(binary, [f"stream.{stream}"])
+            expect(not fault, answer, f"{stream} file of a {form} file", fault)
+            expect(not fault, piped(binary, f"stream.{stream}", "--mesh-format", stream),
+                   f"{stream} stream of a {form} file", fault)
+    check_points(damaged, binary, path, fault)
+    return fault
+
+
+def check_points(damaged, binary, path, fault):
+    """With --points also the vertices must be those of the input, and heights between theirs."""
+    if fault:
+        expect(False, verdict(binary, [path, "--points", "points.npy"]), "with points", fault)
+        return
+    dim, mesh = damaged.dim, damaged.mesh
+    points = np.unique(damaged.points[:, :dim] + 0.0, axis=0)
+    numbers = oracle.numbers_of(points, mesh.vertices[:, :dim])
+    same = len(numbers) == len(points) and np.all(numbers >= 0)
+    if same and dim == 2:
+        at = oracle.numbers_of(points, damaged.points[:, :2])
+        lowest, highest = np.full(len(points), np.inf), np.full(len(points), -np.inf)
+        np.minimum.at(lowest, at, damaged.points[:, 2])
+        np.maximum.at(highest, at, damaged.points[:, 2])
+        z = mesh.vertices[:, 2]
+        same = bool(np.all((lowest[numbers] <= z) & (z <= highest[numbers])))
+    expect(same, verdict(binary, [path, "--points", "points.npy"]), "with points", "other points")
+
+
+def text_of(mesh):
+    lines = ["v " + " ".join(repr(float(v)) for v in row) for row in mesh.vertices[:40]]
+    lines += ["s " + " ".join(str(int(v)) for v in row) for row in mesh.simplices[:60]]
+    return "\n".join("    " + line for line in lines)
+
+
+def run(seed, binary, cgal, folder, most):
+    """Counts of what came of the case; raises Failed."""
+    runs.fresh_folder(folder)
+    damaged = Damaged(seed, binary, folder, most)
+    if not damaged.make(binary):
+        return collections.Counter({"no mesh to damage": 1})
+    try:
+        fault = check_all_ways(damaged, binary, cgal)
+    except Failed as failure:
+        raise Failed(failure.sort, f"{failure} ({damaged.family}, {damaged.mutation}, {damaged.form})\n"
+                     + text_of(damaged.mesh)) from None
+    if os.listdir("scratch"):
+        raise Failed("temporary files are left")
+    return collections.Counter({"wrong meshes refused" if fault else "right meshes proved": 1})
