@@ -126,6 +126,9 @@ def random_options(rng, case):
     maybe(0.2, "--no-trust-headers")
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
         maybe(0.2, "--id")
+    extent = max((np.ptp(one.world()[:, :case.dim]) for one in case.inputs), default=0)
+    if 1e-100 < extent < 1e100:
+        maybe(0.1, "--max-edge", repr(float(extent * 3 * rng.random() / n ** (1 / case.dim) + 1e-200)))
     if case.dim == 2 and all(one.world().shape[1] > 2 for one in case.inputs):
         maybe(0.3, "--heights", rng.choice(["first", "lowest", "highest", "mean"]))
     return chosen

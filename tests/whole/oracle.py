@@ -1,5 +1,4 @@
 """What is right: CGAL's simplices of points, and orientations in exact arithmetic."""
-import fractions
 import itertools
 import subprocess
 
@@ -36,12 +35,15 @@ def determinant(rows):
                for i, row in enumerate(rows) if row[0])
 
 
-def exact(point):
-    return [fractions.Fraction(float(v)) for v in point]
+def exact(points):
+    """Whole numbers in place of doubles: all times one power of two."""
+    ratios = [[float(v).as_integer_ratio() for v in point] for point in points]
+    unit = max(below for point in ratios for _, below in point)
+    return [[above * (unit // below) for above, below in point] for point in ratios]
 
 
 def exact_orientation(corners):
-    first, *others = [exact(corner) for corner in corners]
+    first, *others = exact(corners)
     value = determinant([[a - b for a, b in zip(corner, first)] for corner in others])
     return (value > 0) - (value < 0)
 
@@ -53,9 +55,10 @@ def orientations(points, simplices, most_exact=2000):
     with np.errstate(all="ignore"):
         edges = corners[:, 1:] - corners[:, :1]
         lengths = np.abs(edges).max(axis=2)
-        value = np.linalg.det(edges)
-        bound = 1e-10 * np.prod(lengths, axis=1)
-        sure = (np.abs(value) > bound) & (lengths.min(axis=1) > 1e-60) & (lengths.max(axis=1) < 1e60)
+        usual = (lengths.min(axis=1) > 1e-60) & (lengths.max(axis=1) < 1e60)
+        value = np.zeros(len(corners))
+        value[usual] = np.linalg.det(edges[usual] / lengths[usual][:, :, None])
+        sure = np.abs(value) > 1e-10
     signs = np.where(sure, np.sign(value), 1).astype(int)
     for number in np.flatnonzero(~sure)[:most_exact]:
         signs[number] = exact_orientation(corners[number])
@@ -64,10 +67,10 @@ def orientations(points, simplices, most_exact=2000):
 
 def exact_in_sphere(corners, query):
     """Greater than 0 if the query is inside of the sphere of a positively oriented simplex."""
-    origin = exact(query)
+    *corners, origin = exact([*corners, query])
     rows = []
     for corner in corners:
-        row = [a - b for a, b in zip(exact(corner), origin)]
+        row = [a - b for a, b in zip(corner, origin)]
         rows.append(row + [sum(v * v for v in row)])
     value = determinant(rows)
     return value if len(origin) % 2 == 0 else -value
