@@ -1,7 +1,7 @@
 """Makes a mesh, damages it, and asks `check` for its verdict, as a file and as a stream."""
-import collections
 import os
 import subprocess
+import time
 
 import numpy as np
 
@@ -10,6 +10,7 @@ import mesh_files
 import mutations
 import oracle
 import runs
+import shrink
 from oracle import Failed
 
 FORMATS = ["npy", "ply", "ply-ascii", "obj", "sma"]
@@ -17,25 +18,20 @@ IN_SPACE = ["npy", "ply", "ply-ascii"]
 
 
 class Damaged:
-    """A mesh, what was done to it, and the format it is written in."""
+    """Points, and a mesh of them that is damaged; what is done to it follows from the seed."""
 
-    def __init__(self, seed, binary, folder, most):
-        rng = np.random.default_rng([seed, 1])
-        self.dim = int(rng.choice([2, 2, 3]))
-        largest = min(most, 20000 if self.dim == 2 else 2000) if rng.random() < 0.03 else 60
-        count = int(np.exp(rng.uniform(np.log(4), np.log(largest))))
-        self.family, points = families.random_points(rng, binary, self.dim, count, folder)
-        if self.dim == 2:
-            points = np.hstack([points, rng.integers(0, 9, (len(points), 1))])
-        np.save("points.npy", points)
+    def __init__(self, seed, dim, family, points):
+        self.rng = np.random.default_rng([seed, 2])
+        self.dim = dim
+        self.family = family
         self.points = points
-        self.mutation = ""
-        self.form = str(rng.choice(FORMATS if self.dim == 2 else IN_SPACE))
+        self.form = str(self.rng.choice(FORMATS if dim == 2 else IN_SPACE))
         self.mesh = None
-        self.rng = rng
+        self.mutation = ""
 
     def make(self, binary):
         """False if there is no mesh of these points."""
+        np.save("points.npy", self.points)
         done = subprocess.run([binary, "triangulate", "points.npy", "-o", "right.npy", "-q", "--dim",
                                str(self.dim), "--leaf-points", "10"], capture_output=True, text=True)
         if done.returncode != 0:
@@ -43,15 +39,25 @@ class Damaged:
                 return False
             raise Failed(f"triangulate ends with {done.returncode}", done.stderr)
         self.mesh = mesh_files.read_npy("right")
-        self.mesh.vertices = self.mesh.vertices.copy()
-        with np.errstate(all="ignore"):
-            for _ in range(2 if self.rng.random() < 0.1 else 1):
-                kind = mutations.MUTATIONS[self.rng.integers(0, len(mutations.MUTATIONS))]
-                if self.mesh.simplices.max(initial=-1) not in range(len(self.mesh.vertices)):
-                    break  # no simplices, or no such vertex
-                kind(self.rng, self.mesh, self.dim)
-                self.mutation += ("+" if self.mutation else "") + kind.__name__
+        times = 2 if self.rng.random() < 0.1 else 1
+        for kind in self.rng.choice(len(mutations.MUTATIONS), times):
+            if self.mesh.simplices.max(initial=-1) not in range(len(self.mesh.vertices)):
+                break  # no simplices, or no such vertex
+            mutate = mutations.MUTATIONS[kind]
+            mutate(self.rng, self.mesh, self.dim)
+            self.mutation += ("+" if self.mutation else "") + mutate.__name__
         return True
+
+
+def random_points(seed, binary, folder, most):
+    rng = np.random.default_rng([seed, 1])
+    dim = int(rng.choice([2, 2, 3]))
+    largest = min(most, 20000 if dim == 2 else 2000) if rng.random() < 0.03 else 60
+    count = int(np.exp(rng.uniform(np.log(4), np.log(largest))))
+    family, points = families.random_points(rng, binary, dim, count, folder)
+    if dim == 2:
+        points = np.hstack([points, rng.integers(0, 9, (len(points), 1))])
+    return dim, family, points
 
 
 class Fault:
@@ -178,17 +184,38 @@ def text_of(mesh):
     return "\n".join("    " + line for line in lines)
 
 
-def run(seed, binary, cgal, folder, most):
-    """Counts of what came of the case; raises Failed."""
+def run_damaged(damaged, binary, cgal, folder):
     runs.fresh_folder(folder)
-    damaged = Damaged(seed, binary, folder, most)
     if not damaged.make(binary):
-        return collections.Counter({"no mesh to damage": 1})
-    try:
-        fault = check_all_ways(damaged, binary, cgal)
-    except Failed as failure:
-        raise Failed(failure.sort, f"{failure} ({damaged.family}, {damaged.mutation}, {damaged.form})\n"
-                     + text_of(damaged.mesh)) from None
+        return "no mesh to damage"
+    fault = check_all_ways(damaged, binary, cgal)
     if os.listdir("scratch"):
         raise Failed("temporary files are left")
-    return collections.Counter({"wrong meshes refused" if fault else "right meshes proved": 1})
+    return "wrong meshes refused" if fault else "right meshes proved"
+
+
+def run(seed, binary, cgal, folder, options):
+    """What came of the case; raises Failed, with a small mesh in its text."""
+    runs.fresh_folder(folder)
+    dim, family, points = random_points(seed, binary, folder, options.most)
+
+    def failure_of(rows):
+        damaged = Damaged(seed, dim, family, points[rows])
+        try:
+            return run_damaged(damaged, binary, cgal, folder), None, damaged
+        except Failed as failure:
+            return "", failure, damaged
+
+    what, failure, _ = failure_of(slice(None))
+    if failure is None:
+        return what
+
+    def fails(rows):
+        other = failure_of(rows)[1]
+        return other is not None and other.sort == failure.sort
+
+    rows = shrink.fewer(len(points), fails, time.monotonic() + options.shrink)
+    _, small, damaged = failure_of(rows)
+    small = small or failure
+    raise Failed(small.sort, f"{small.text} ({family}, {damaged.mutation}, {damaged.form}; wrong.* and "
+                 f"stream.* are the mesh)\n{text_of(damaged.mesh)}")

@@ -11,6 +11,7 @@ class Failed(Exception):
     def __init__(self, sort, text=""):
         super().__init__(f"{sort}: {text}" if text else sort)
         self.sort = sort
+        self.text = text
 
 
 def sorted_rows(rows):

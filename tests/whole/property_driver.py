@@ -50,8 +50,8 @@ class Driver:
         os.makedirs(f"{self.folder}/made", exist_ok=True)
         os.chdir(self.folder)
         if kind == "meshes":
-            self.counts += damaged_meshes.run(seed, self.binary, self.cgal, f"{self.folder}/case",
-                                              self.options.most)
+            what = damaged_meshes.run(seed, self.binary, self.cgal, f"{self.folder}/case", self.options)
+            self.counts[what] += 1
             return
         case = cases.random_case(seed, self.binary, f"{self.folder}/made", kind, self.options.most)
         try:

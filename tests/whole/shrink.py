@@ -6,6 +6,23 @@ import numpy as np
 import oracle
 
 
+def fewer(count, fails, end):
+    """Numbers below `count` of which `fails` is true and none can be left out, if there is time.
+    Delta debugging: ever smaller parts are left out."""
+    numbers, parts = np.arange(count), 2
+    while len(numbers) > 1 and time.monotonic() < end:
+        for piece in np.array_split(numbers, min(parts, len(numbers))):
+            rest = np.setdiff1d(numbers, piece)
+            if fails(rest):
+                numbers, parts = rest, max(2, parts - 1)
+                break
+        else:
+            if parts >= len(numbers):
+                break
+            parts *= 2
+    return numbers
+
+
 class Shrinker:
     def __init__(self, run, sort, seconds):
         self.run = run          # takes a case, raises oracle.Failed
@@ -65,26 +82,15 @@ class Shrinker:
         return changes
 
     def without_points(self, case):
-        """Delta debugging over all points of all inputs: ever smaller parts are left out."""
-        parts = 2
-        while case.points() > 1 and time.monotonic() < self.end:
-            pieces = np.array_split(np.arange(case.points()), min(parts, case.points()))
-            for piece in pieces:
-                smaller = self.left_out(case, piece)
-                if smaller.inputs and self.fails(smaller):
-                    case, parts = smaller, max(2, parts - 1)
-                    break
-            else:
-                if parts >= case.points():
-                    return case
-                parts *= 2
-        return case
+        stay = fewer(case.points(), lambda rows: self.fails(self.of(case, rows)), self.end)
+        return self.of(case, stay)
 
     @staticmethod
-    def left_out(case, numbers):
+    def of(case, numbers):
+        """The case with these points alone."""
         smaller = case.copy()
-        stays = np.ones(case.points(), bool)
-        stays[numbers] = False
+        stays = np.zeros(case.points(), bool)
+        stays[numbers] = True
         smaller.inputs, first = [], 0
         for one in case.inputs:
             rows = stays[first:first + len(one.points)]
