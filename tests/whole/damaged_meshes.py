@@ -1,4 +1,5 @@
 """Makes a mesh, damages it, and asks `check` for its verdict, as a file and as a stream."""
+import copy
 import os
 import subprocess
 import time
@@ -9,11 +10,14 @@ import families
 import mesh_files
 import mutations
 import oracle
+import point_files
 import runs
 import shrink
 from oracle import Failed
 
 FORMATS = ["npy", "ply", "ply-ascii", "obj", "sma"]
+IN_SPACE = ["npy", "ply", "ply-ascii"]
+OFF_LATTICE = "a vertex is not on the lattice"
 IN_SPACE = ["npy", "ply", "ply-ascii"]
 
 
@@ -21,24 +25,29 @@ class Damaged:
     """Points, and a mesh of them that is damaged; what is done to it follows from the seed."""
 
     def __init__(self, seed, dim, family, points):
+        """`points` is a file of them (point_files.Input)."""
         self.rng = np.random.default_rng([seed, 2])
         self.dim = dim
         self.family = family
         self.points = points
-        self.form = str(self.rng.choice(FORMATS if dim == 2 else IN_SPACE))
+        # npy tells no lattice, so `check` needs the points to prove it.
+        known = FORMATS if dim == 2 else IN_SPACE
+        self.form = str(self.rng.choice(known if points.scale is None else known[1:]))
         self.mesh = None
         self.mutation = ""
 
     def make(self, binary):
         """False if there is no mesh of these points."""
-        np.save("points.npy", self.points)
-        done = subprocess.run([binary, "triangulate", "points.npy", "-o", "right.npy", "-q", "--dim",
+        self.points.write(binary, 0)
+        done = subprocess.run([binary, "triangulate", self.points.name(0), "-o", "right.npy", "-q", "--dim",
                                str(self.dim), "--leaf-points", "10"], capture_output=True, text=True)
         if done.returncode != 0:
             if runs.NO_SIMPLEX.search(done.stderr):
                 return False
             raise Failed(f"triangulate ends with {done.returncode}", done.stderr)
         self.mesh = mesh_files.read_npy("right")
+        if self.points.scale is not None:
+            self.mesh.lattice = (self.points.scale, self.points.offset)
         times = 2 if self.rng.random() < 0.1 else 1
         for kind in self.rng.choice(len(mutations.MUTATIONS), times):
             if self.mesh.simplices.max(initial=-1) not in range(len(self.mesh.vertices)):
@@ -57,7 +66,11 @@ def random_points(seed, binary, folder, most):
     family, points = families.random_points(rng, binary, dim, count, folder)
     if dim == 2:
         points = np.hstack([points, rng.integers(0, 9, (len(points), 1))])
-    return dim, family, points
+    if np.all(points == np.rint(points)) and np.max(np.abs(points)) < 2 ** 31 and rng.random() < 0.7:
+        scale = np.full(3, float(rng.choice([1, 0.01, 0.001, 1e-7])))
+        offset = rng.choice([0.0, 100, 500000], 3)
+        return dim, family, point_files.Input("las", points, scale, offset)
+    return dim, family, point_files.Input("npy", points)
 
 
 class Fault:
@@ -73,6 +86,12 @@ def fault_of(mesh, dim, cgal):
     vertices, simplices = mesh.vertices[:, :dim] + 0.0, mesh.simplices
     if not np.all(np.isfinite(mesh.vertices)):
         return Fault("a coordinate is not finite")
+    if mesh.lattice is not None:
+        scale, offset = (part[:dim] for part in mesh.lattice)
+        whole = np.rint((vertices - offset) / scale) + 0.0
+        if not np.array_equal(whole * scale + offset, vertices):
+            return Fault(OFF_LATTICE)
+        vertices = whole
     if len(simplices) == 0:
         return Fault("no simplices")
     if simplices.min() < 0 or simplices.max() >= len(vertices):
@@ -144,38 +163,47 @@ def check_all_ways(damaged, binary, cgal):
         expect(right, verdict(binary, [path, "--any-delaunay"]), f"{form} file, any Delaunay", why)
     if form != "npy":
         expect(right, piped(binary, path, "--mesh-format", form), f"{form} stream", why)
-    streams = ["spm", "sma"] if damaged.dim == 2 else ["spm"]
-    for stream in streams:
+    check_streams(damaged, binary, cgal, path, fault)
+    check_points(damaged, binary, path, why)
+    return why
+
+
+def check_streams(damaged, binary, cgal, path, fault):
+    """As spm and sma. What is not on its lattice is converted without one."""
+    if fault.text == OFF_LATTICE and damaged.form != "sma":
+        plain = copy.copy(damaged.mesh)
+        plain.lattice = None
+        fault = fault_of(plain, damaged.dim, cgal)
+    right, why = not fault.text, fault.text
+    for stream in ["spm", "sma"] if damaged.dim == 2 else ["spm"]:
         done = subprocess.run([binary, "convert", path, "-o", f"stream.{stream}", "-q"],
                               capture_output=True, text=True)
         if done.returncode not in (0, 1) or (done.returncode == 1 and right):
             raise Failed(f"convert ends with {done.returncode}", done.stderr)
         if done.returncode == 0:
-            answer = verdict(binary, [f"stream.{stream}"])
-            expect(right, answer, f"{stream} file of a {form} file", why)
-            expect(right, piped(binary, f"stream.{stream}", "--mesh-format", stream),
-                   f"{stream} stream of a {form} file", why)
-    check_points(damaged, binary, path, why)
-    return why
+            how = f"{stream} of a {damaged.form} file"
+            expect(right, verdict(binary, [f"stream.{stream}"]), how, why)
+            expect(right, piped(binary, f"stream.{stream}", "--mesh-format", stream), f"piped {how}", why)
 
 
 def check_points(damaged, binary, path, fault):
     """With --points also the vertices must be those of the input, and heights between theirs."""
     if fault:
-        expect(False, verdict(binary, [path, "--points", "points.npy"]), "with points", fault)
+        expect(False, verdict(binary, [path, "--points", damaged.points.name(0)]), "with points", fault)
         return
     dim, mesh = damaged.dim, damaged.mesh
-    points = np.unique(damaged.points[:, :dim] + 0.0, axis=0)
+    world = damaged.points.world()
+    points = np.unique(world[:, :dim] + 0.0, axis=0)
     numbers = oracle.numbers_of(points, mesh.vertices[:, :dim])
     same = len(numbers) == len(points) and np.all(numbers >= 0)
     if same and dim == 2:
-        at = oracle.numbers_of(points, damaged.points[:, :2])
+        at = oracle.numbers_of(points, world[:, :2])
         lowest, highest = np.full(len(points), np.inf), np.full(len(points), -np.inf)
-        np.minimum.at(lowest, at, damaged.points[:, 2])
-        np.maximum.at(highest, at, damaged.points[:, 2])
+        np.minimum.at(lowest, at, world[:, 2])
+        np.maximum.at(highest, at, world[:, 2])
         z = mesh.vertices[:, 2]
         same = bool(np.all((lowest[numbers] <= z) & (z <= highest[numbers])))
-    expect(same, verdict(binary, [path, "--points", "points.npy"]), "with points", "other points")
+    expect(same, verdict(binary, [path, "--points", damaged.points.name(0)]), "with points", "other points")
 
 
 def text_of(mesh):
@@ -200,7 +228,7 @@ def run(seed, binary, cgal, folder, options):
     dim, family, points = random_points(seed, binary, folder, options.most)
 
     def failure_of(rows):
-        damaged = Damaged(seed, dim, family, points[rows])
+        damaged = Damaged(seed, dim, family, points.take(rows))
         try:
             return run_damaged(damaged, binary, cgal, folder), None, damaged
         except Failed as failure:
@@ -214,7 +242,7 @@ def run(seed, binary, cgal, folder, options):
         other = failure_of(rows)[1]
         return other is not None and other.sort == failure.sort
 
-    rows = shrink.fewer(len(points), fails, time.monotonic() + options.shrink)
+    rows = shrink.fewer(len(points.points), fails, time.monotonic() + options.shrink)
     _, small, damaged = failure_of(rows)
     small = small or failure
     raise Failed(small.sort, f"{small.text} ({family}, {damaged.mutation}, {damaged.form}; wrong.* and "

@@ -9,6 +9,7 @@ ENDS = {"ply-ascii": "ply", "landxml": "xml"}
 
 class Mesh:
     def __init__(self, vertices, simplices, index=None):
+        self.lattice = None         # scale and offset, that a written mesh tells
         self.vertices = vertices    # three coordinates, of more dimensions as many
         self.simplices = simplices
         self.index = index          # of each vertex its number in the input, if it is known
@@ -68,9 +69,17 @@ def read_mesh(command, path, form, dim):
     return mesh
 
 
+def notes(mesh, mark):
+    if mesh.lattice is None:
+        return ""
+    numbers = " ".join(repr(float(v)) for part in mesh.lattice for v in part)
+    return (f"{mark} spillway dimension {mesh.simplices.shape[1] - 1}\n"
+            f"{mark} spillway lattice {numbers}\n")
+
+
 def ply_bytes(mesh, coding):
     kind = "face" if mesh.simplices.shape[1] == 3 else "tetrahedron"
-    head = (f"ply\nformat {coding} 1.0\nelement vertex {len(mesh.vertices)}\n"
+    head = (f"ply\nformat {coding} 1.0\n{notes(mesh, 'comment')}element vertex {len(mesh.vertices)}\n"
             "property double x\nproperty double y\nproperty double z\n"
             f"element {kind} {len(mesh.simplices)}\n"
             "property list uchar int vertex_indices\nend_header\n").encode()
@@ -86,7 +95,7 @@ def ply_bytes(mesh, coding):
 
 
 def obj_bytes(mesh):
-    rows = "".join("v " + " ".join(repr(float(v)) for v in row) + "\n" for row in mesh.vertices)
+    rows = notes(mesh, "#") + "".join("v " + " ".join(repr(float(v)) for v in row) + "\n" for row in mesh.vertices)
     rows += "".join("f " + " ".join(str(v + 1) for v in row) + "\n" for row in mesh.simplices)
     return rows.encode()
 
@@ -109,7 +118,7 @@ def sma_bytes(mesh):
     for vertex in range(len(mesh.vertices)):
         if vertex not in name:
             lines.append("v " + " ".join(repr(float(v)) for v in mesh.vertices[vertex]))
-    return ("\n".join(lines) + "\n").encode()
+    return (notes(mesh, "#") + "\n".join(lines) + "\n").encode()
 
 
 def write_mesh(mesh, stem, form):
