@@ -67,9 +67,9 @@ def plain_inputs(rng, dim, points):
 
 
 def parts_of(rng, rows):
-    """One to four parts, by their order or by strips, as files of a survey are."""
-    count = int(rng.choice([1, 1, 1, 2, 4])) if len(rows) >= 12 else 1
-    if count > 1 and rng.random() < 0.5:
+    """One or more parts, by their order or by strips, as files of a survey are."""
+    count = int(rng.choice([1, 1, 1, 1, 2, 2, 4, 4, 12])) if len(rows) >= 12 else 1
+    if count > 1 and rng.random() < 0.6:
         rows = rows[np.argsort(rows[:, int(rng.integers(0, 2))], kind="stable")]
     return [part for part in np.array_split(rows, count) if len(part)]
 

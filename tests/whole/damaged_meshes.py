@@ -18,7 +18,6 @@ from oracle import Failed
 FORMATS = ["npy", "ply", "ply-ascii", "obj", "sma"]
 IN_SPACE = ["npy", "ply", "ply-ascii"]
 OFF_LATTICE = "a vertex is not on the lattice"
-IN_SPACE = ["npy", "ply", "ply-ascii"]
 
 
 class Damaged:
