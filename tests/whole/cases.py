@@ -61,7 +61,7 @@ def plain_inputs(rng, dim, points):
              and not (dim > 3 and f in ("npy-float32", "sorted-spp", "npy-columns"))]
     if np.max(np.abs(rows), initial=0) > 3e38:
         known = [f for f in known if f != "npy-float32"]
-    if dim > 3 and len(rows) < 20:  # a part of few rows may look like one point a column
+    if dim > 3 and len(rows) < 120:  # a part of few rows may look like one point a column
         known = [f for f in known if f not in ("npy", "npy-big")]
     return [point_files.Input(str(rng.choice(known)), part) for part in parts_of(rng, rows)]
 
@@ -74,6 +74,20 @@ def parts_of(rng, rows):
     return [part for part in np.array_split(rows, count) if len(part)]
 
 
+def survey_of(rng, rows):
+    """Tiles of a survey, from side to side; a few points are in the file of another tile."""
+    columns, rows_of_tiles = rng.integers(2, 6, 2)
+    tiles = [tile for strip in np.array_split(rows[np.argsort(rows[:, 0], kind="stable")], columns)
+             for tile in np.array_split(strip[np.argsort(strip[:, 1], kind="stable")], rows_of_tiles)]
+    number = np.repeat(np.arange(len(tiles)), [len(tile) for tile in tiles])
+    together = np.vstack(tiles)
+    if rng.random() < 0.5:
+        moved = rng.random(len(number)) < 0.03
+        number = np.where(moved, rng.integers(0, len(tiles), len(number)), number)
+    parts = [together[number == tile] for tile in rng.permutation(len(tiles))]
+    return [part for part in parts if len(part)]
+
+
 def lattice_inputs(rng, dim, points):
     """Integers of 32 bits, in files of one lattice."""
     rows = points
@@ -83,7 +97,8 @@ def lattice_inputs(rng, dim, points):
     offset = np.floor(rng.choice([0, 0, 100, 500000], 3)).astype(float)
     whole = np.max(np.abs(rows), initial=0) < 2 ** 30
     files = []
-    for part in parts_of(rng, rows):
+    survey = len(rows) >= 60 and rng.random() < 0.5
+    for part in survey_of(rng, rows) if survey else parts_of(rng, rows):
         steps = rng.integers(-4, 5, 3) * 100 if whole and rng.random() < 0.2 else np.zeros(3)
         # Whole units: the same lattice, from another offset.
         units = steps * (1 if scale[0] >= 0.001 else 0)
@@ -116,7 +131,9 @@ def random_options(rng, case):
             chosen.append([str(argument) for argument in arguments])
 
     maybe(0.7, "--leaf-points", log_uniform(rng, 1, n))
-    maybe(0.7, "--tile-points", log_uniform(rng, max(1, n // 100), 2 * n))
+    survey = len(case.inputs) > 4  # whose tiles may be triangulated while points are read
+    most = max(1, n // 20 if survey else 2 * n)
+    maybe(0.9 if survey else 0.7, "--tile-points", log_uniform(rng, min(most, max(1, n // 100)), most))
     if not case.ranks or rng.random() < 0.3:
         maybe(0.6, "--threads", rng.integers(1, 5))
     maybe(0.3, "--children", rng.choice([2, 3, 4, 8, 1024]))

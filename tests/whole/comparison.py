@@ -73,6 +73,7 @@ def check_index(case, expected, mesh, numbers):
 
 
 def check_stats(case, expected):
+    """Which ways the run went, for the driver's summary."""
     with open("out/stats.json", encoding="utf-8") as file:
         stats = json.load(file)
     wanted = {"points": len(expected.kept), "vertices": len(expected.points),
@@ -83,6 +84,10 @@ def check_stats(case, expected):
     for key, value in wanted.items():
         if stats[key] != value:
             raise Failed(f"--stats has another {key}", f"{stats[key]}, not {value}")
+    told = ["spilled"] if stats["spilled_points"] else []
+    if (stats["first_block_read_points"] or 0) < stats["points"]:
+        told.append("begun while reading")
+    return told
 
 
 def check_proof(case, binary, path):

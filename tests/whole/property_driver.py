@@ -55,7 +55,7 @@ class Driver:
             return
         case = cases.random_case(seed, self.binary, f"{self.folder}/made", kind, self.options.most)
         try:
-            self.counts[self.run(case).what] += 1
+            self.counts.update(self.run(case).what)
         except oracle.Failed as failure:
             print(f"{runs.shown(case, 'spillway')}\n  {case.family}, {case.points()} points: {failure}",
                   file=sys.stderr, flush=True)
@@ -73,7 +73,7 @@ class Driver:
         for number, one in enumerate(small.inputs):
             lattice = f", scale {one.scale}, offset {one.offset}" if one.scale is not None else ""
             print(f"  {one.name(number)}: {len(one.points)} points{lattice}", file=sys.stderr)
-            for row in one.points[:40]:
+            for row in one.points[:40] if small.points() < 300 else []:
                 print("    " + " ".join(repr(float(v)) for v in row), file=sys.stderr)
 
 

@@ -10,6 +10,7 @@ import mesh_files
 from expected import Expected
 from oracle import Failed
 
+TOO_LITTLE = re.compile(rb"memory (is|are) too little.*--memory (\d+)([MG])")
 MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 SECONDS = 120
 
@@ -19,7 +20,7 @@ NO_SIMPLEX = re.compile(r"the filters leave no points|nothing is left$|the input
 
 
 class Outcome:
-    def __init__(self, what):
+    def __init__(self, *what):
         self.what = what
 
 
@@ -88,6 +89,23 @@ def check_clean(case):
         raise Failed("unfinished files are left", ", ".join(unfinished))
 
 
+def give_memory(case, done):
+    """Whether the run had too little memory; then the case gets what the error names, in space at
+    least one and a half times as much."""
+    named = TOO_LITTLE.search(done.stderr) if done.returncode == 1 else None
+    if named is None or not case.option("--memory"):
+        return False
+    before = int(case.option("--memory")[1][:-1])
+    after = int(named.group(2)) * (1024 if named.group(3) == b"G" else 1)
+    if after <= before or case.points() < 20_000:
+        raise Failed("too little memory for few points", done.stderr.decode()[-300:])
+    if case.dim > 2:
+        after = max(after, before * 3 // 2)
+    case.options = [["--memory", f"{after}M"] if option[0] == "--memory" else option
+                    for option in case.options]
+    return True
+
+
 def check_error(case, expected, done):
     """The outcome of a run that ended with an error, if that is a right one."""
     message = done.stderr.decode(errors="replace").strip()
@@ -116,8 +134,15 @@ def run_case(case, binary, cgal, folder):
     expected = Expected(case, cgal)
     if expected.unclear:
         return Outcome("unclear")
-    done = call(command_of(case, binary), case)
-    check_clean(case)
+    told = []
+    for _ in range(8):
+        done = call(command_of(case, binary), case)
+        check_clean(case)
+        if not give_memory(case, done):
+            break
+        if told and case.dim == 2:
+            raise Failed("the memory that an error names is not enough", done.stderr.decode()[-300:])
+        told = ["more memory"]
     if done.returncode != 0:
         return check_error(case, expected, done)
     path = f"out/mesh.{mesh_files.end_of(case.form)}"
@@ -128,7 +153,6 @@ def run_case(case, binary, cgal, folder):
         raise Failed("a mesh of points without simplices")
     mesh = mesh_files.read_mesh(binary, path, case.form, case.dim)
     comparison.check_mesh(case, expected, mesh)
-    if not case.pipe_out:
-        comparison.check_stats(case, expected)
+    told += [] if case.pipe_out else comparison.check_stats(case, expected)
     comparison.check_proof(case, binary, path)
-    return Outcome("the same")
+    return Outcome("the same", *told)
