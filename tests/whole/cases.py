@@ -88,7 +88,7 @@ def survey_of(rng, rows):
     return [part for part in parts if len(part)]
 
 
-def lattice_inputs(rng, dim, points):
+def lattice_inputs(rng, dim, points, forms=tuple(point_files.LATTICE)):
     """Integers of 32 bits, in files of one lattice."""
     rows = points
     if dim == 2:
@@ -105,9 +105,19 @@ def lattice_inputs(rng, dim, points):
         inner = part - np.rint(units / scale)
         if np.max(np.abs(inner), initial=0) >= 2 ** 31 - 1:
             units, inner = np.zeros(3), part
-        files.append(point_files.Input(str(rng.choice(point_files.LATTICE)), inner, scale,
+        files.append(point_files.Input(str(rng.choice(forms)), inner, scale,
                                        offset + units, bool(rng.random() < 0.05)))
     return files
+
+
+def large_survey(rng, dim, most):
+    """Files that tell their boxes, so many that tiles are complete before all have been read."""
+    n = log_uniform(rng, 1000, max(1000, min(most, 3000 if dim == 3 else 30000)))
+    side = float(rng.choice([30, 1000, 2 ** 30]))
+    points = np.rint((2 * rng.random((n, dim)) - 1) * side)
+    if rng.random() < 0.3:
+        points = np.rint(rng.normal(size=(n, dim)) * side / 6)
+    return "survey", points, lattice_inputs(rng, dim, points, SURVEY_FORMS)
 
 
 def random_inputs(rng, case, points):
@@ -151,17 +161,28 @@ def random_options(rng, case):
     return chosen
 
 
-def random_case(seed, command, folder, kind="runs", most=20000):
-    rng = np.random.default_rng(seed)
-    dim = int(rng.choice([2, 2, 2, 2, 3, 3, 3, 4]))
+def random_set(rng, command, folder, dim, most):
     size = random_size(rng, dim, most)
     family, points = families.random_points(rng, command, dim, size, folder)
     if dim == 4 and family not in SURE_IN_4:
         family, points = "normal", rng.normal(size=(min(size, 60), 4))
     if dim == 4:
         points = points[np.sort(rng.permutation(len(points))[:60])]
+    return family, points, None
+
+
+SURVEY_FORMS = ("las", "las", "las", "laz", "copc")
+
+
+def random_case(seed, command, folder, kind="runs", most=20000):
+    rng = np.random.default_rng(seed)
+    dim = int(rng.choice([2, 2, 2, 2, 3, 3, 3, 4]))
+    if dim < 4 and rng.random() < 0.12:
+        family, points, inputs = large_survey(rng, dim, most)
+    else:
+        family, points, inputs = random_set(rng, command, folder, dim, most)
     case = Case(seed, dim, family)
-    case.inputs = random_inputs(rng, case, points)
+    case.inputs = inputs or random_inputs(rng, case, points)
     if kind == "ranks":
         case.ranks = int(rng.integers(1, 5))
     world = np.vstack([one.world() for one in case.inputs]) if same_width(case) else None
