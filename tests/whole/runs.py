@@ -68,10 +68,11 @@ def call(arguments, case):
     if not case.ranks:
         environment["TMPDIR"] = os.path.abspath("scratch")
     try:
-        done = subprocess.run(arguments, stdin=stdin, capture_output=True, timeout=SECONDS,
+        seconds = SECONDS + case.points() / 500  # a busy machine, and points on one circle
+        done = subprocess.run(arguments, stdin=stdin, capture_output=True, timeout=seconds,
                               env=environment)
     except subprocess.TimeoutExpired:
-        raise Failed("no end", f"after {SECONDS} seconds") from None
+        raise Failed("no end", f"after {seconds:.0f} seconds") from None
     finally:
         if feeder:
             feeder.stdout.close()
