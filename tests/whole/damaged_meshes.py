@@ -113,8 +113,8 @@ def fault_of(mesh, dim, cgal):
 
 
 def may_be_ties(points, mesh, numbers, found, right):
-    """Not if there is another reason: simplices that are missing or there twice alone, or one with a
-    point inside of its sphere. Of many simplices only the first are looked at."""
+    """Not if there is another reason: simplices that are missing or there twice alone, or one with
+    a point inside of its sphere. Of many simplices only the first are looked at."""
     known = set(map(tuple, right.tolist()))
     strange = [row for row in numbers[mesh.simplices].tolist() if tuple(sorted(row)) not in known]
     if not strange or len(np.unique(found, axis=0)) != len(found):

@@ -3,8 +3,8 @@ import numpy as np
 
 
 class Filter:
-    """`arguments` of the command; `keep(world, numbers, counts)` gives those of the numbered points that are
-    kept, in the order in which they come, of inputs with `counts` records each."""
+    """`arguments` of the command; `keep(world, numbers, counts)` gives those of the numbered points
+    that are kept, in the order in which they come, of inputs with `counts` records each."""
 
     def __init__(self, arguments, keep):
         self.arguments = arguments
@@ -97,7 +97,7 @@ def thin(rng, world, exact):
 
 
 def random_filters(rng, world, dim, exact):
-    """In the order in which the command applies them. `exact`: bounds may be coordinates of points."""
+    """In the order in which the command applies them. `exact`: bounds may be those of points."""
     if len(world) < 2 or rng.random() < 0.7:
         return []
     known = [every, where, bounds]

@@ -95,7 +95,8 @@ def ply_bytes(mesh, coding):
 
 
 def obj_bytes(mesh):
-    rows = notes(mesh, "#") + "".join("v " + " ".join(repr(float(v)) for v in row) + "\n" for row in mesh.vertices)
+    rows = notes(mesh, "#")
+    rows += "".join("v " + " ".join(repr(float(v)) for v in row) + "\n" for row in mesh.vertices)
     rows += "".join("f " + " ".join(str(v + 1) for v in row) + "\n" for row in mesh.simplices)
     return rows.encode()
 

@@ -15,7 +15,7 @@ ENDS = {"npy-columns": "npy", "npy-big": "npy", "npy-float32": "npy", "npy-struc
 
 
 class Input:
-    """One file: points as doubles, and for those on a lattice the scale and the offset of integers."""
+    """One file: points as doubles; on a lattice integers, a scale and an offset."""
 
     def __init__(self, form, points, scale=None, offset=None, lies=False):
         self.form = form

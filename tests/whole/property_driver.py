@@ -3,11 +3,11 @@
 
     property_driver.py FOLDER [--minutes 1 | --cases 100] [--seed 1] [--kind runs] [--most 20000]
 
-FOLDER has the programs spillway and cgal_mesh. A case follows from its seed and kind alone; the first
-one has --seed (a number, or `random`), the next one the next number. Kinds: `runs` of one process,
-`ranks` of several, and `meshes`, which are damaged: `check` must refuse all that are wrong. At the
-first finding the driver prints its seed, makes the case small, keeps its files, prints the command
-that repeats it, and ends with 1; with 77 if something is missing that it needs.
+FOLDER has the programs spillway and cgal_mesh. A case follows from its seed, its kind and --most
+alone; the first one has --seed (a number, or `random`), the next one the next number. Kinds: `runs`
+of one process, `ranks` of several, and `meshes`, which are damaged: `check` must refuse all that are
+wrong. At the first finding the driver prints its seed, makes the case small, keeps its files, prints
+the command that repeats it, and ends with 1; with 77 if something is missing that it needs.
 """
 import argparse
 import collections

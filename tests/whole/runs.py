@@ -15,7 +15,8 @@ MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 SECONDS = 120
 
 # Errors that are right for points without a simplex.
-NO_SIMPLEX = re.compile(r"the filters leave no points|nothing is left$|the input has (no|only \d+ distinct) points?|"
+NO_SIMPLEX = re.compile(r"the filters leave no points|nothing is left$|"
+                        r"the input has (no|only \d+ distinct) points?|"
                         r"lie (on one line|in one plane|in one space of fewer dimensions)")
 
 
