@@ -47,6 +47,8 @@ def log_uniform(rng, low, high):
 
 def random_size(rng, dim, most):
     largest = {2: most, 3: most / 4, 4: min(most / 40, 60)}[dim]
+    if dim == 2 and most >= 500_000 and rng.random() < 0.1:
+        return most  # more than 32M hold
     least = 1 if rng.random() < 0.1 else 3 * dim
     return log_uniform(rng, least, largest if rng.random() < 0.2 else min(300, largest))
 
@@ -149,7 +151,7 @@ def random_options(rng, case):
     maybe(0.3, "--children", rng.choice([2, 3, 4, 8, 1024]))
     maybe(0.3, "--division", rng.choice(["least-border", "longest", "cycling", "constant"]))
     maybe(0.1, "--kernel", rng.choice(["spillway", "cgal"]) if case.dim < 4 else "spillway")
-    maybe(0.5, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
+    maybe(0.5 if n < 500_000 else 1, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
     maybe(0.2, "--no-trust-headers")
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
         maybe(0.2, "--id")
