@@ -66,12 +66,11 @@ void ConditionParser::next() {
     if (at_ == text_.size()) fail("a name in quotes does not end");
     ++at_;
   } else if (is_word(c) || c == '-' || c == '+') {
-    take_while([this](char other) {
+    const bool number = std::isalpha(static_cast<unsigned char>(c)) == 0 && c != '_';
+    take_while([this, number](char other) {
       const char before = text_[at_ - 1];
-      const bool exponent_sign = (other == '-' || other == '+') &&
-                                 (before == 'e' || before == 'E') &&
-                                 std::isdigit(static_cast<unsigned char>(text_[begin_])) != 0;
-      return is_word(other) || exponent_sign;
+      const bool exponent = number && (before == 'e' || before == 'E');
+      return is_word(other) || (exponent && (other == '-' || other == '+'));
     });
   } else if (c == '<' || c == '>' || c == '=' || c == '!') {
     if (at_ < text_.size() && (text_[at_] == '=' || (c == '<' && text_[at_] == '>'))) ++at_;

@@ -227,7 +227,7 @@ TEST_F(Disk, ReadsAtAnyByteBesideWhatIsReadInOrder) {
 TEST_F(Disk, AFileThatIsCutOffOrGrowsWhileItIsReadIsAnError) {
   std::string buffer(8, ' ');
   const std::span<std::byte> bytes = std::as_writable_bytes(std::span(buffer));
-  for (const std::string now : {"01234", "0123456789ab"}) {
+  for (const std::string& now : std::vector<std::string>{"01234", "0123456789ab"}) {
     put_content(path("a"), "0123456789");
     const auto file = disk().open(path("a"));
     put_content(path("a"), now);

@@ -47,6 +47,8 @@ TEST(Condition, ComparesNumbersAndNames) {
   EXPECT_TRUE(holds("\"a b\" >= 1e+10", point));
   EXPECT_TRUE(holds("z < intensity", point));
   EXPECT_TRUE(holds("+1 > .5", point));
+  EXPECT_TRUE(holds("z < -1e-5 and z>-3.6e+2", point));
+  EXPECT_TRUE(holds("intensity > .5e-3 and intensity < +2.5E+2", point));
 }
 
 TEST(Condition, BindsNotTighterThanAndTighterThanOr) {
