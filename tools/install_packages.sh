@@ -4,7 +4,7 @@
 #
 #   tools/install_packages.sh build   what a build of the library and the command needs
 #   tools/install_packages.sh [test]  what tests and benchmarks need, too
-#   tools/install_packages.sh fuzz    what the preset fuzz needs besides
+#   tools/install_packages.sh long    what tools/test_long.sh and the preset fuzz need besides
 #   tools/install_packages.sh package what tools/package.sh needs
 set -euo pipefail
 
@@ -12,10 +12,10 @@ list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 case ${1:-test} in
   build) sections='build' ;;
   test) sections='build test' ;;
-  fuzz) sections='build test fuzz' ;;
+  long) sections='build test long' ;;
   package) sections='build package' ;;
   *)
-    echo "install_packages.sh: '$1' is none of build, test, fuzz, package" >&2
+    echo "install_packages.sh: '$1' is none of build, test, long, package" >&2
     exit 2
     ;;
 esac

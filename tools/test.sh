@@ -13,7 +13,7 @@ preset=${1:-release}
 shift || true
 
 tools/install_packages.sh test
-[[ $preset != fuzz ]] || tools/install_packages.sh fuzz
+[[ $preset != fuzz ]] || tools/install_packages.sh long
 
 jobs=$(nproc)
 options=(-DSPILLWAY_TESTS=ON)

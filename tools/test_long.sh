@@ -34,7 +34,7 @@ tidy() {
 }
 
 fuzz() {
-  tools/install_packages.sh fuzz &&
+  tools/install_packages.sh long &&
     cmake --preset fuzz --log-level=WARNING && cmake --build --preset fuzz -j "$jobs" &&
     tests/fuzz/run.py build/fuzz/bin/fuzz "$logs/fuzz" --minutes "$minutes" --jobs "$jobs"
 }
@@ -49,6 +49,7 @@ whole() {
 
 kills() {
   local driver="tests/stream/checkpoint/kill_driver.py $bin/spillway --seed $RANDOM"
+  echo "$driver"
   build_release && $driver --kills 1000 && $driver --damages 500 && $driver --full-disks 50
 }
 

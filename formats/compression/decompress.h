@@ -24,9 +24,9 @@ Compression compression_of_content(std::span<const std::byte> first_bytes);
 
 /// A stream of what `source` holds compressed; several compressed streams one after another count
 /// as one. Its size is unknown. Throws Failure on reading if the data is corrupt, ends early or is
-/// followed by something else, and once there are more than 64 MiB and `max_expansion` times what was
-/// read of the source. Memory is constant, but that for zstd with a large window (--long):
-/// as much as that window, 2 GiB at most. `source` must outlive the result.
+/// followed by something else, and once there are more than 64 MiB and `max_expansion` (at least 1)
+/// times what was read of the source. Memory is constant, but that for zstd with a large window
+/// (--long): as much as that window, 2 GiB at most. `source` must outlive the result.
 std::unique_ptr<InputFile> decompressed(InputBytes& source, Compression compression,
                                         std::uint64_t max_expansion);
 

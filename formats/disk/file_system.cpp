@@ -101,7 +101,7 @@ class DiskInput : public InputFile {
       return ::pread(file_.get(), rest.data(), rest.size(),
                      start_ + static_cast<off_t>(position + done));
     });
-    if (got > 0 && got < buffer.size()) check_end(position + got);
+    if (got < buffer.size() && position <= *size_) check_end(position + got);
     return got;
   }
 
@@ -124,7 +124,7 @@ class DiskInput : public InputFile {
   void check_end(std::uint64_t end) const {
     struct stat status {};
     if (*size_ == 0 || end == *size_ || ::fstat(file_.get(), &status) != 0) return;
-    const auto now = static_cast<std::uint64_t>(status.st_size - start_);
+    const auto now = static_cast<std::uint64_t>(std::max<off_t>(0, status.st_size - start_));
     if (now == *size_) return;  // as of files that the system makes up
     throw BadInput(name_,
                    fmt::format("the file had {} bytes when it was opened, and now has {}: it was "

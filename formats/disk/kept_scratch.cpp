@@ -66,8 +66,8 @@ KeptScratchFolder::KeptScratchFolder(std::string path, std::optional<std::uint64
   if (::mkdir(path_.c_str(), 0700) != 0 && errno != EEXIST) {
     fail_at_scratch_file("create", path_, errno);
   }
-  // Who may put a link there must not choose where points are written.
-  if (fs::is_symlink(path_)) fail_at_scratch_file("create", path_, ELOOP);
+  std::error_code unknown;  // then it is told of when a file is created
+  if (fs::is_symlink(path_, unknown)) fail_at_scratch_file("create", path_, ELOOP);
 }
 
 KeptScratchFolder::~KeptScratchFolder() = default;
@@ -102,6 +102,9 @@ void KeptScratchFolder::go_on_after(std::uint64_t files_made) {
 std::unique_ptr<ScratchFile> KeptScratchFolder::reopen(const std::string& file_name,
                                                        std::uint64_t size) {
   std::string path = (fs::path(path_) / file_name).string();
+  if (fs::path(file_name).filename() != file_name) {
+    throw BadInput(path, "this is no file of the run: it cannot go on");
+  }
   const OpenedFile file(path, O_WRONLY);
   if (file.get() < 0) {
     throw BadInput(path, std::generic_category().message(errno) + ": the run cannot go on");

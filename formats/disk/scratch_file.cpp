@@ -55,7 +55,8 @@ std::uint64_t ScratchUsage::peak() const {
 }
 
 OpenedFile::OpenedFile(const std::string& path, int flags)
-    : fd_(::open(path.c_str(), flags | O_CLOEXEC)) {}
+    : fd_(::open(path.c_str(), flags | O_CLOEXEC | ((flags & O_DIRECTORY) == 0 ? O_NOFOLLOW : 0))) {
+}
 
 OpenedFile::~OpenedFile() {
   if (fd_ >= 0) ::close(fd_);

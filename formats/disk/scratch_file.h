@@ -34,6 +34,7 @@ class ScratchUsage {
 /// A file that is open for the duration of one operation: there may be more files than descriptors.
 class OpenedFile {
  public:
+  /// Follows a link to a folder, but none to a file: who may put one there must not choose which.
   OpenedFile(const std::string& path, int flags);
   ~OpenedFile();
   OpenedFile(const OpenedFile&) = delete;

@@ -151,14 +151,22 @@ std::size_t remove_content(const fs::path& folder) {
   return removed;
 }
 
-/// Removes a folder that was registered, while the registry is locked, or notes that it stays.
+/// While the registry is locked.
+void note_that_it_stays(const std::string& path) {
+  try {
+    registry().stuck.push_back(path);
+  } catch (const std::bad_alloc&) {  // then nobody is told
+  }
+}
+
+/// Removes a folder that was registered, or notes that it stays.
 void remove_or_note_folder(const std::string& path) {
-  if (!remove_folder(path)) registry().stuck.push_back(path);
+  if (!remove_folder(path)) note_that_it_stays(path);
 }
 
 /// The same of a file.
 void remove_or_note_file(const std::string& path) {
-  if (::unlink(path.c_str()) != 0 && errno != ENOENT) registry().stuck.push_back(path);
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) note_that_it_stays(path);
 }
 
 /// Removes a file, or a folder with all that is in it, if it is there.

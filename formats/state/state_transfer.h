@@ -69,6 +69,7 @@ template <typename State, typename T>
 void transfer(State& state, std::vector<T>& values) {
   const std::uint64_t size = transfer_size(state, values.size());
   if constexpr (State::kReads) {
+    if constexpr (PlainState<T> && !HasState<T, State>) state.check_size(size * sizeof(T));
     values.clear();
     values.resize(size);
   }

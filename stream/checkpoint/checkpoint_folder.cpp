@@ -38,7 +38,8 @@ std::string made_folder(std::string path) {
 
 /// One that is made survives whatever happens from now on.
 void make_folder(const std::string& path) {
-  if (::mkdir(path.c_str(), 0775) == 0) {
+  constexpr mode_t kNobodyElseWrites = 0775;  // whatever the umask is
+  if (::mkdir(path.c_str(), kNobodyElseWrites) == 0) {
     const OpenedFile parent(fs::absolute(fs::path(path) / "..").lexically_normal(),
                             O_RDONLY | O_DIRECTORY);
     if (parent.get() >= 0) ::fsync(parent.get());  // where a system cannot, it needs not

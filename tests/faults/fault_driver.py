@@ -5,7 +5,7 @@
 
 Each family is a kind of run. It is made once to count its calls, and then once for each call and
 each error that the system may give: of files (open, read, write, ...), of memory from a page on,
-of threads, and of what is read from scratch files. After an error that the run cannot bear, it must
+of threads, and of what is read from scratch files, spp and spm. After an error that the run cannot bear, it must
 end with exit code 1 and one line that says what failed and why; nothing may be under the final
 name, beside it, or in the temporary folder. After one that it can (an interrupted call, half a
 transfer), its bytes must be those of the run without faults. --most N takes N of a family's calls
@@ -29,6 +29,7 @@ MANY = ["generate", "terrain", "-n", "600000", "-o", "in.las"]
 TABLE = ["generate", "terrain", "-n", "5000", "-o", "in.csv"]
 SPACE = ["generate", "uniform", "--dim", "3", "-n", "5000", "-o", "in.npy"]
 TILES = ["generate", "terrain", "--grid", "2x2", "-n", "4000", "-o", "in#.las"]
+SEALED = ["convert", "in.las", "-o", "in.spp"]
 MESH = ["triangulate", "in.las", "-o", "mesh.spm"]
 
 # Name: what is run before, and arguments.
@@ -49,8 +50,11 @@ FAMILIES = {
     "picture": ([POINTS], ["render", "in.las", "-o", "out.png"]),
     "page": ([POINTS], ["render", "in.las", "-o", "out.html"]),
     "checked": ([POINTS, MESH], ["check", "mesh.spm", "--points", "in.las"]),
+    "proved": ([MANY, MESH], ["check", "mesh.spm"]),
+    "sealed": ([MANY, SEALED], ["triangulate", "in.spp", "-o", "out.spm"]),
     "converted": ([POINTS, MESH], ["convert", "mesh.spm", "-o", "out.obj"]),
-    "batch": ([TILES], ["batch", "in*.las", "--to", "spm,ply", "-j", "1"]),
+    "batch": ([TILES], ["batch", "in*.las", "--to", "spm,ply", "-j", "1",
+                         "--output-dir", "out"]),
 }
 
 # As errors: half of a transfer is done; a bit is flipped of what is read; nothing is read any more.
@@ -59,6 +63,7 @@ WORDS = {SHORT: "half a transfer", FLIPPED: "a flipped bit", ENDED: "an early en
 BEARABLE = {SHORT, errno.EINTR}
 ERRORS = {
     "scratch": [FLIPPED, ENDED],
+    "input": [FLIPPED, ENDED],
     "open": [errno.EMFILE, errno.EACCES, errno.ENOSPC],
     "read": [errno.EIO, errno.EINTR, SHORT],
     "write": [errno.ENOSPC, errno.EIO, errno.EDQUOT, errno.EINTR, SHORT],
@@ -73,6 +78,7 @@ ERRORS = {
 }
 OF_FILES = [call for call in ERRORS if call not in ("memory", "thread")]
 REASONS = {"memory": "memory", "thread": "thread", "scratch": "tmp/"}
+CHECKSUMS = {"proved": "mesh.spm", "sealed": "in.spp"}  # families whose input has them
 NEED_GDAL = {"dem", "contour"}  # whose libraries end the process where they get no memory
 OF_SCRATCH = {"FAULT_FOLDER": "tmp"}  # within the folder of the run
 
@@ -90,11 +96,12 @@ class Family:
             subprocess.run([options.command, *arguments, "-q"], cwd=self.folder, check=True)
         self.inputs = {path.name for path in self.folder.iterdir()}
         right = self.run("count", {"FAULT_COUNTS": "counts"})
-        self.counts = dict(line.split() for line in right.counts.splitlines())
-        of_scratch = self.run("count", {"FAULT_COUNTS": "counts", **OF_SCRATCH}).counts
-        self.counts["scratch"] = dict(line.split() for line in of_scratch.splitlines())["read"]
         if right.code != 0:
             raise SystemExit(f"{name}: the run without faults ends with {right.code}: {right.text}")
+        self.counts = dict(line.split() for line in right.counts.splitlines())
+        of_scratch = self.run("count", {"FAULT_COUNTS": "counts", **OF_SCRATCH}).counts
+        self.counts["input"] = self.counts["read"]
+        self.counts["scratch"] = dict(line.split() for line in of_scratch.splitlines())["read"]
         self.right = right.files
 
     def run(self, name, environment):
@@ -125,11 +132,15 @@ class Run:
         self.left = {str(path.relative_to(folder)) for path in left} - family.inputs
         self.left |= {str(path.relative_to(folder)) for path in (folder / "tmp").iterdir()}
         self.files = {path: (folder / path).read_bytes() for path in self.left
-                      if (folder / path).is_file() and not path.startswith(("state", "tmp/"))}
+                      if (folder / path).is_file() and not path.startswith(("state", "tmp/"))
+                      and not path.endswith((".log", ".json"))}  # a batch's records, with times
         shutil.rmtree(folder)
 
     def errors(self):
-        return [line for line in self.text.splitlines() if line.startswith("spillway: error")]
+        """Its lines of errors; of a batch one of the jobs that failed."""
+        lines = self.text.splitlines()
+        of_jobs = [line for line in lines if re.match(r"spillway: \[\d+/\d+\] .*: failed", line)]
+        return of_jobs[:1] or [line for line in lines if line.startswith("spillway: error")]
 
 
 def left_behind(family, run, call):
@@ -139,7 +150,7 @@ def left_behind(family, run, call):
         left = {path for path in left if not re.match(r"state|out\.spm\..*\.part$", path)}
     if family.name in ("resumed", "batch"):
         left = {path for path in left if run.files.get(path, b"") != family.right.get(path)
-                and not path.endswith(".log")}
+                and not path.endswith((".log", ".json"))}
     if call == "unlink" and "cannot remove" in run.text:
         left = {path for path in left if not path.startswith("tmp/")}
     return sorted(left)
@@ -159,8 +170,10 @@ def complaint(family, run, call, error):
         return "an error that it should bear"
     if len(run.errors()) != 1:
         return f"{len(run.errors())} lines of errors"
-    reason = REASONS.get(call) or os.strerror(error)
-    if reason not in run.errors()[0]:
+    named = CHECKSUMS.get(family.name) if call == "input" else REASONS.get(call)
+    reason = named or os.strerror(error)
+    untold = "ended with exit code" in run.errors()[0]  # the batch cannot read the job's log either
+    if reason not in run.errors()[0] and not untold:
         return f"the error does not say '{reason}'"
     left = left_behind(family, run, call)
     return f"left behind: {left}" if left else None
@@ -168,6 +181,8 @@ def complaint(family, run, call, error):
 
 def evenly(count, most):
     numbers = range(1, count + 1)
+    if most == 1:
+        return numbers[:1]
     if most and count > most:
         return sorted({1 + i * (count - 1) // (most - 1) for i in range(most)})
     return numbers
@@ -177,10 +192,12 @@ def cases_of(family, options):
     for call in options.calls:
         if call == "memory" and family.name in NEED_GDAL:
             continue
+        if call == "input" and family.name not in CHECKSUMS:
+            continue
         for n in evenly(int(family.counts[call]), options.most):
             for error in ERRORS[call]:
                 # Of memory, the run frees some itself.
-                lasting = error not in BEARABLE and call not in ("memory", "scratch")
+                lasting = error not in BEARABLE and call not in ("memory", "scratch", "input")
                 for lasts in ("0", "1") if lasting else ("0",):
                     yield family, call, n, error, lasts
 
@@ -190,9 +207,9 @@ def try_case(case):
     name = f"{call}_{n}_{error}_{lasts}"
     fault = {"FAULT_AT": str(n), "FAULT_ERROR": str(error), "FAULT_LASTS": lasts}
     if call == "scratch":
-        run = family.run(name, {"FAULT_CALL": "read", **fault, **OF_SCRATCH})
-    else:
-        run = family.run(name, {"FAULT_CALL": call, **fault})
+        fault.update(OF_SCRATCH)
+    counted_as = "read" if call in ("scratch", "input") else call
+    run = family.run(name, {"FAULT_CALL": counted_as, **fault})
     return case, run, complaint(family, run, call, error)
 
 

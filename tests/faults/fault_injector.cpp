@@ -290,6 +290,22 @@ int unlink(const char* path) {
   return within_folder(path) && fails(kUnlink) ? -1 : NEXT(unlink)(path);
 }
 
+int rmdir(const char* path) {
+  return within_folder(path) && fails(kUnlink) ? -1 : NEXT(rmdir)(path);
+}
+
+int remove(const char* path) {
+  return within_folder(path) && fails(kUnlink) ? -1 : NEXT(remove)(path);
+}
+
+int fallocate(int file, int mode, off_t offset, off_t size) {
+  return within_folder(file) && fails(kSize) ? -1 : NEXT(fallocate)(file, mode, offset, size);
+}
+
+int fallocate64(int file, int mode, off64_t offset, off64_t size) {
+  return fallocate(file, mode, offset, size);
+}
+
 int mkdir(const char* path, mode_t mode) {
   return within_folder(path) && fails(kFolder) ? -1 : NEXT(mkdir)(path, mode);
 }

@@ -40,6 +40,7 @@ void write_seeds(const std::string& folder) {
   namespace fs = std::filesystem;
   for (const FuzzTarget& target : fuzz_targets()) {
     const fs::path own = fs::path(folder) / target.name;
+    fs::remove_all(own);  // libFuzzer adds to them: every run begins with the same ones
     fs::create_directories(own);
     std::size_t number = 0;
     for (const std::string& seed : target.seeds()) {

@@ -47,7 +47,7 @@ std::vector<InputPlace> places_of(const Job& job, PlaceSurvey how, const Context
   given.force_crs = job.options.contains("force-crs");
   given.to_crs = value_of(job, "to-crs");
   given.skip_invalid = job.options.contains("skip-invalid");
-  if (const auto most = parse_number(value_of(job, "max-expansion"))) {
+  if (const auto most = parse_number(value_of(job, "max-expansion")); most && *most < 1e15) {
     given.max_expansion = static_cast<std::uint64_t>(*most);
   }
   given.salvage = job.options.contains("salvage");

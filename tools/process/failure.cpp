@@ -113,9 +113,12 @@ std::string temporary_paths_left_in_words() {
                      fmt::join(paths, ", "));
 }
 
-void tell_of_temporary_paths_left() {
-  const std::string words = temporary_paths_left_in_words();
-  if (!words.empty()) write_warning(words);
+void tell_of_temporary_paths_left() noexcept {
+  try {
+    const std::string words = temporary_paths_left_in_words();
+    if (!words.empty()) write_warning(words);
+  } catch (const std::exception&) {  // no memory for words
+  }
 }
 
 void handle_uncaught_exceptions() {

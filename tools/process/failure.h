@@ -22,6 +22,6 @@ void handle_uncaught_exceptions();
 std::string temporary_paths_left_in_words();
 
 /// Warns of them, for the end of main.
-void tell_of_temporary_paths_left();
+void tell_of_temporary_paths_left() noexcept;
 
 }  // namespace spillway::command

@@ -89,6 +89,7 @@ class GeoTiff : public Raster {
                               static_cast<int>(grid.rows), static_cast<int>(options_.bands.size()),
                               of_bytes() ? GDT_Byte : GDT_Float32, creation.List()));
     if (!file_) fail(gdal_reason());
+    is_written_.resize(tile_number(options_.bands.size(), 0, 0));
     std::array<double, 6> transform = {grid.west, grid.resolution, 0, grid.north,
                                        0,         -grid.resolution};
     if (file_->SetGeoTransform(transform.data()) != CE_None) fail(gdal_reason());
@@ -120,7 +121,7 @@ class GeoTiff : public Raster {
     const CPLErr error = band(number).WriteBlock(
         static_cast<int>(tile_column), static_cast<int>(tile_row), const_cast<void*>(block));
     if (error != CE_None || gdal_failed()) fail(gdal_reason());
-    written_.push_back({number, tile_column, tile_row});
+    is_written_[tile_number(number, tile_column, tile_row)] = true;
   }
 
   void finish() override {
@@ -140,14 +141,32 @@ class GeoTiff : public Raster {
     return *file_->GetRasterBand(static_cast<int>(number) + 1);
   }
 
-  /// Throws Failure if a tile is not in the file: GDAL's threads that compress tiles leave out those
-  /// for which they get no memory, and no call tells so.
+  [[nodiscard]] std::size_t tile_number(std::size_t band_number, std::size_t column,
+                                        std::size_t row) const {
+    return (band_number * tile_rows() + row) * tile_columns() + column;
+  }
+  [[nodiscard]] std::size_t tile_columns() const {
+    return (options_.grid.pixels.columns + kRasterTile - 1) / kRasterTile;
+  }
+  [[nodiscard]] std::size_t tile_rows() const {
+    return (options_.grid.pixels.rows + kRasterTile - 1) / kRasterTile;
+  }
+
+  /// Throws Failure if a tile is not in the file: GDAL's threads that compress tiles leave out
+  /// those for which they get no memory, and no call tells so.
   void check_tiles() {
+    if (options_.compression == "none") return;  // empty tiles come when the file is closed
     file_->FlushCache(false);
-    for (const Tile& tile : written_) {
-      const std::string item = fmt::format("BLOCK_SIZE_{}_{}", tile.column, tile.row);
-      if (band(tile.band).GetMetadataItem(item.c_str(), "TIFF") == nullptr) {
-        fail("GDAL could not compress all pixels, most likely for want of memory");
+    for (std::size_t b = 0; b < options_.bands.size(); ++b) {
+      for (std::size_t row = 0; row < tile_rows(); ++row) {
+        for (std::size_t column = 0; column < tile_columns(); ++column) {
+          const std::string item = fmt::format("BLOCK_SIZE_{}_{}", column, row);
+          if (!is_written_[tile_number(b, column, row)] ||
+              band(b).GetMetadataItem(item.c_str(), "TIFF") != nullptr) {
+            continue;
+          }
+          fail("GDAL could not compress all pixels, most likely for want of memory");
+        }
       }
     }
   }
@@ -202,13 +221,7 @@ class GeoTiff : public Raster {
   const RasterOptions options_;
   const std::string plain_path_;
   const unsigned threads_;
-  struct Tile {
-    std::size_t band;
-    std::uint32_t column;
-    std::uint32_t row;
-  };
-
-  std::vector<Tile> written_;
+  std::vector<bool> is_written_;     ///< by the number of the tile
   std::vector<std::uint8_t> bytes_;  ///< of a tile that is written
   GDALDatasetUniquePtr file_;
 };

@@ -58,7 +58,8 @@ class Place {
 
  private:
   void add_vertex(std::uint64_t number, double height) {
-    if (vertex_) return add_surplus(number);
+    if (vertex_) add_surplus(std::max(*vertex_, number));
+    if (vertex_ && *vertex_ < number) return;
     vertex_ = number;
     height_ = height;
   }
@@ -199,7 +200,7 @@ void PointComparison::compare(PointStream& input, const CheckerOptions& options,
        .index = true,
        .record_size = static_cast<std::size_t>(further_axes(dimension_)) * sizeof(double),
        .batches = std::clamp<std::size_t>(memory_ / 8 / kBatchBytes, kLeastBatches, kEnoughBatches),
-       .one_of_equal = dimension_ <= 3 ? std::optional(Heights::kFirst) : std::nullopt,
+       .one_of_equal = Heights::kFirst,
        .tell_equal = [&](const PointsView& points) { tell_equal(points); }},
       scratch_, times, dealing);
   Faults faults(report, options.most_faults);

@@ -66,7 +66,7 @@ void ConditionParser::next() {
     if (at_ == text_.size()) fail("a name in quotes does not end");
     ++at_;
   } else if (is_word(c) || c == '-' || c == '+') {
-    const bool number = std::isalpha(static_cast<unsigned char>(c)) == 0 && c != '_';
+    const bool number = std::string_view("0123456789.+-").find(c) != std::string_view::npos;
     take_while([this, number](char other) {
       const char before = text_[at_ - 1];
       const bool exponent = number && (before == 'e' || before == 'E');

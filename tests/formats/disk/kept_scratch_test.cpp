@@ -54,6 +54,15 @@ TEST_F(KeptScratch, FollowsNoLinksThatSomebodyHasPutThere) {
   EXPECT_TRUE(fs::is_empty(parent_ / "elsewhere"));
 }
 
+TEST_F(KeptScratch, GoesOnWithNoFileButThoseOfItsOwn) {
+  KeptScratchFolder folder(path(), std::nullopt);
+  folder.create("tile")->append(bytes(10));
+  EXPECT_THROW(static_cast<void>(folder.reopen("../scratch/tile-1", 10)), BadInput);
+  fs::create_symlink("tile-1", parent_ / "scratch" / "tile-2");
+  EXPECT_THROW(static_cast<void>(folder.reopen("tile-2", 5)), BadInput);
+  EXPECT_EQ(fs::file_size(parent_ / "scratch" / "tile-1"), 10U);
+}
+
 TEST_F(KeptScratch, OthersCannotReadIt) {
   KeptScratchFolder folder(path(), std::nullopt);
   const auto file = folder.create("tile");

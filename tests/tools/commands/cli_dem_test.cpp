@@ -68,6 +68,20 @@ TEST(Dem, HeightsAreTheSurfacesWithinTheInterpolationBound) {
   }
 }
 
+TEST(Dem, TilesWithoutTrianglesAreEmptyWhateverTheCompression) {
+  const Workspace work;
+  work.write("triangle.txt", "0 0 1\n700 0 1\n0 700 1\n");
+  std::vector<float> right;
+  for (const std::string options : {"--compress none", "--compress deflate", "--compress zstd",
+                                    "--cog --compress none", "--cog", "--threads 1"}) {
+    work.succeed("spillway dem -q triangle.txt -o dem.tif --resolution 1 " + options);
+    const std::vector<float> pixels = OpenedRaster(work, "dem.tif").pixels();
+    if (right.empty()) right = pixels;
+    EXPECT_EQ(pixels, right) << options;
+    EXPECT_EQ(pixels[699], -9999) << options;
+  }
+}
+
 TEST(Dem, EqualsWhatGdalGridInterpolates) {
   const Workspace work;
   work.succeed("command -v gdal_grid > gdal_grid.path || true");
