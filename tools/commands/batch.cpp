@@ -32,6 +32,7 @@
 #include "tools/commands/command.h"
 #include "tools/commands/run_statistics.h"
 #include "tools/options/command_options.h"
+#include "tools/process/failure.h"
 #include "tools/process/interrupts.h"
 #include "tools/report/json_text.h"
 #include "tools/report/text_output.h"
@@ -283,7 +284,7 @@ class Batch {
       job.log = std::make_shared<JobLog>(job.run->log);
       start_step(job);
     } catch (const std::exception& error) {
-      finish_job(job, error.what());
+      finish_job(job, words_of(error));
     }
   }
 
@@ -346,7 +347,7 @@ class Batch {
       try {
         start_step(job);
       } catch (const std::exception& error) {
-        finish_job(job, error.what());
+        finish_job(job, words_of(error));
       }
     }
   }
@@ -367,7 +368,7 @@ class Batch {
       save_record(run);
     } catch (const std::exception& failure) {
       run.status = "failed";
-      run.error = failure.what();
+      run.error = words_of(failure);
     }
     ++ended_;
     progress_.say(fmt::format("[{}/{}] {}: {} in {:.1f} s{}", ended_, runs_.size(), run.job.name,

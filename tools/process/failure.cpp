@@ -72,6 +72,19 @@ std::string no_thread() {
 /// What oneTBB throws has no type of its own.
 bool is_of_a_thread(std::string_view what) { return what.starts_with("pthread_create"); }
 
+}  // namespace
+
+std::string words_of(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return no_memory();
+  const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
+  const bool of_thread = of_system != nullptr
+                             ? of_system->code() == std::errc::resource_unavailable_try_again
+                             : is_of_a_thread(error.what());
+  return of_thread ? no_thread() : error.what();
+}
+
+namespace {
+
 /// Says what was thrown; the exit code.
 int report(const std::exception_ptr& failure) {
   try {
@@ -82,14 +95,8 @@ int report(const std::exception_ptr& failure) {
     return report_error(error, kExitUsage);
   } catch (const Failure& error) {
     return report_error(error, kExitFailed);
-  } catch (const std::bad_alloc&) {
-    return report_error(Failure(no_memory()), kExitFailed);
-  } catch (const std::system_error& error) {
-    const bool thread = error.code() == std::errc::resource_unavailable_try_again;
-    return report_error(Failure(thread ? no_thread() : error.what()), kExitFailed);
   } catch (const std::exception& error) {
-    return report_error(Failure(is_of_a_thread(error.what()) ? no_thread() : error.what()),
-                        kExitFailed);
+    return report_error(Failure(words_of(error)), kExitFailed);
   }
 }
 

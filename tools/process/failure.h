@@ -14,6 +14,10 @@ namespace spillway::command {
 /// are in the way.
 int report_failure(const std::exception_ptr& failure) noexcept;
 
+/// What an exception says; of memory and threads that cannot be had with the limits that are in the
+/// way, as report_failure() has them.
+std::string words_of(const std::exception& error);
+
 /// Makes an exception that nobody catches, as in a thread of a library, end the run as
 /// report_failure() would, with nothing left behind.
 void handle_uncaught_exceptions();

@@ -164,6 +164,11 @@ TEST_F(Misuse, AFileOfPointsIsNotWrittenOnAfterItsEnd) {
   EXPECT_EQ(fs::file_size(file("a.txt")), size);
 }
 
+TEST_F(Misuse, OfOptionsThatLeaveNoPointsIsRefused) {
+  EXPECT_THROW(open_points({file("p.txt")}, {.every = 0}, context_), Error);
+  EXPECT_THROW(open_points({file("p.txt")}, {.max_expansion = 0}, context_), Error);
+}
+
 TEST_F(Misuse, SourcesOutliveTheContextTheyWereOpenedWith) {
   make_mesh("mesh.spm");
   std::unique_ptr<PointSource> points;
