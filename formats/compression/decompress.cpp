@@ -155,9 +155,10 @@ class LimitedExpansion : public InputFile {
     given_ += got;
     if (given_ > kFreeExpansion && given_ / max_expansion_ > source_.position()) {
       throw BadInput(source_.name(),
-                     fmt::format("the {} data expands to more than {} times its size; if that is "
-                                 "meant, decompress it first, or allow a larger expansion",
-                                 name_of(compression_), max_expansion_),
+                     fmt::format("the {} data expands to more than {} times its size, before byte "
+                                 "{}; if that is meant, decompress it first, or allow a larger "
+                                 "expansion",
+                                 name_of(compression_), max_expansion_, source_.position()),
                      at_byte(source_.position()));
     }
     return got;

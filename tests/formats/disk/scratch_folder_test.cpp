@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/disk/scratch_file.h"
 #include "formats/disk/unfinished_files.h"
 #include "tests/error_facts.h"
 #include "tests/formats/point_test_helpers.h"
@@ -210,16 +211,23 @@ TEST_F(Scratch, TheCapHoldsForWhatIsThere) {
 
 TEST_F(Scratch, AFullDiskIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "/dev/full is not there";
-  const auto scratch = folder();
-  const auto file = scratch->create("tile");
-  fs::remove(file->name());
-  fs::create_symlink("/dev/full", file->name());
-  const auto append = [&] { file->append(as_bytes_of("x")); };
-  EXPECT_THAT(error_of(append),
-              HasSubstr("cannot write " + file->name() + ": No space left on device"));
-  EXPECT_EQ(facts_of(append).file, file->name());
+  ScratchUsage usage(std::nullopt);
+  DiskScratchFile file("/dev/full", 0, 0, usage);
+  const auto append = [&] { file.append(as_bytes_of("x")); };
+  EXPECT_THAT(error_of(append), HasSubstr("cannot write /dev/full: No space left on device"));
+  EXPECT_EQ(facts_of(append).file, "/dev/full");
   EXPECT_EQ(facts_of(append).system_error, ENOSPC);
   EXPECT_EQ(facts_of(append).remedy, Remedy::kScratchFolder);
+}
+
+TEST_F(Scratch, ALinkInPlaceOfAFileIsNotFollowed) {
+  const auto scratch = folder();
+  const auto file = scratch->create("tile");
+  const fs::path elsewhere = parent_ / "elsewhere";
+  fs::rename(file->name(), elsewhere);
+  fs::create_symlink(elsewhere, file->name());
+  EXPECT_THROW(file->append(as_bytes_of("x")), SystemRefusal);
+  EXPECT_EQ(fs::file_size(elsewhere), 0U);
 }
 
 TEST_F(Scratch, AFileThatShrankIsAnError) {
