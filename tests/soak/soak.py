@@ -123,11 +123,11 @@ class Watcher:
 def large_run(watcher):
     options = watcher.options
     memory = ["--memory", options.memory]
-    yield "generate", ["generate", "terrain", "-n", options.points, "-o", "points.laz"]
-    yield "triangulate", ["triangulate", "points.laz", "-o", "mesh.spm", *memory]
+    yield "generate", ["generate", "terrain", "-n", options.points, "-o", "points.spp"]
+    yield "triangulate", ["triangulate", "points.spp", "-o", "mesh.spm", *memory]
     yield "check", ["check", "mesh.spm", *memory]
-    yield "check --points", ["check", "mesh.spm", "--points", "points.laz", *memory]
-    yield "dem", ["dem", "points.laz", "-o", "dem.tif", "--resolution", "5", *memory]
+    yield "check --points", ["check", "mesh.spm", "--points", "points.spp", *memory]
+    yield "dem", ["dem", "points.spp", "-o", "dem.tif", "--resolution", "5", *memory]
 
 
 def many_jobs(watcher):
@@ -201,14 +201,14 @@ def main():
     for stage, arguments in (many_jobs if options.jobs else large_run)(watcher):
         of_stage = figures(stage, watcher.run(stage, arguments))
         watcher.write()
+        if options.picture:
+            draw(watcher.samples, options.picture)
         grows, limited = of_stage.pop("grows"), "--memory" in arguments
         too_much = limited and of_stage["memory"] * MIB > bytes_of(options.memory) + ALLOWED
         wrong |= grows or too_much
         print(" ".join(f"{name} {value:.0f}," if name != "stage" else f"{value}:"
                        for name, value in of_stage.items()),
               "descriptors grow" if grows else "", "too much memory" if too_much else "", flush=True)
-    if options.picture:
-        draw(watcher.samples, options.picture)
     return 1 if wrong else 0
 
 
