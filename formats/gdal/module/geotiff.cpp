@@ -157,6 +157,7 @@ class GeoTiff : public Raster {
   void check_tiles() {
     if (options_.compression == "none") return;  // empty tiles come when the file is closed
     file_->FlushCache(false);
+    if (gdal_failed()) fail(gdal_reason());  // the disk is full, or the like
     for (std::size_t b = 0; b < options_.bands.size(); ++b) {
       for (std::size_t row = 0; row < tile_rows(); ++row) {
         for (std::size_t column = 0; column < tile_columns(); ++column) {
