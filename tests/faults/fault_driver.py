@@ -4,13 +4,12 @@
     fault_driver.py COMMAND INJECTOR [--calls read,write] [--family NAME,...] [--most 40] [--jobs 2]
 
 Each family is a kind of run. It is made once to count its calls, and then once for each call and
-each error that the system may give: of files (open, read, write, ...), of memory from a page on,
-of threads, and of what is read from scratch files, spp and spm. After an error that the run cannot bear, it must
-end with exit code 1 and one line that says what failed and why; nothing may be under the final
-name, beside it, or in the temporary folder. After one that it can (an interrupted call, half a
-transfer), its bytes must be those of the run without faults. --most N takes N of a family's calls
-of each kind, evenly, instead of all.
-Exits with 1 if a run ended otherwise.
+each error that the system may give: of files (open, read, write, ...), of memory from a page on, of
+threads, and of what is read from scratch files, spp and spm. After an error that the run cannot
+bear, it must end with exit code 1 and one line that says what failed and why; nothing may be under
+the final name, beside it, or in the temporary folder. After one that it can (an interrupted call,
+half a transfer), its bytes must be those of the run without faults. --most N takes N of a family's
+calls of each kind, evenly, instead of all. Exits with 1 if a run ended otherwise.
 """
 import argparse
 import concurrent.futures

@@ -4,13 +4,13 @@
     soak.py COMMAND --points 1e9 --folder FOLDER [--memory 1G] [--picture FILE.png]
     soak.py COMMAND --jobs 20000 --folder FOLDER [--picture FILE.png]
 
-With --points, so many points of a terrain are generated, triangulated, checked, also against the
-points, and made a raster. With --jobs, `batch` makes meshes of so many small files. Twice a second
-a line goes to FOLDER/samples.csv: seconds, stage, memory and descriptors of the process and of those
-that it has begun, bytes in its scratch folder, and how much it has done. At the end a table is
-printed; --picture draws the lines. Exits with 1 if a stage fails, takes more memory than --memory
-and 54 MiB, or if its descriptors grow: in the last tenth of a stage there are more than in its first
-half, by some.
+With --points, so many points of a terrain are generated, triangulated, checked, made a raster, and
+checked against the points. With --jobs, `batch` makes meshes of so many small files. Twice a second
+a line goes to FOLDER/samples.csv: seconds, stage, memory and descriptors of the process and of
+those that it has begun, bytes in its scratch folder, and how much it has done. At the end a table
+is printed; --picture draws the lines. Exits with 1 if a stage fails, takes more memory than
+--memory and 54 MiB, or if its descriptors grow: in the last tenth of a stage there are more than in
+its first half, by some.
 """
 import argparse
 import csv
@@ -126,8 +126,8 @@ def large_run(watcher):
     yield "generate", ["generate", "terrain", "-n", options.points, "-o", "points.spp"]
     yield "triangulate", ["triangulate", "points.spp", "-o", "mesh.spm", *memory]
     yield "check", ["check", "mesh.spm", *memory]
-    yield "check --points", ["check", "mesh.spm", "--points", "points.spp", *memory]
     yield "dem", ["dem", "points.spp", "-o", "dem.tif", "--resolution", "5", *memory]
+    yield "check --points", ["check", "mesh.spm", "--points", "points.spp", *memory]
 
 
 def many_jobs(watcher):
