@@ -3,7 +3,7 @@
 #
 #   tools/test_long.sh                 asan tsan tidy fuzz faults whole kills
 #   tools/test_long.sh fuzz whole      these alone
-#   tools/test_long.sh soak            a billion points, and 20,000 jobs: 20 GB of disk
+#   tools/test_long.sh soak            a billion points, and 20,000 jobs: 80 GB of disk
 #   MINUTES=60 tools/test_long.sh fuzz how long each target is fuzzed, and random runs go on
 #
 # Prints a line for each part, and ends with 1 if one of them failed. docs/testing.md has the results.

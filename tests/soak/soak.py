@@ -174,7 +174,7 @@ def draw(samples, picture):
         first = next(s["seconds"] for s in samples if s["stage"] == stage)
         for axis in axes:
             axis.axvline(first, color="grey", linewidth=0.8)
-        axes[0].annotate(stage, (first, axes[0].get_ylim()[1]), fontsize=9)
+        axes[0].annotate(stage, (first, axes[0].get_ylim()[1]), fontsize=9, rotation=25)
     axes[-1].set_xlabel("seconds")
     figure.tight_layout()
     figure.savefig(picture, dpi=100)
