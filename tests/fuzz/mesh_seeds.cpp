@@ -2,6 +2,7 @@
 #include "formats/meshes/mesh_formats.h"
 #include "tests/formats/meshes/attributed_mesh.h"
 #include "tests/formats/meshes/export_test_helpers.h"
+#include "tests/formats/meshes/square_mesh.h"
 #include "tests/fuzz/block_repair.h"
 #include "tests/fuzz/file_bundle.h"
 #include "tests/fuzz/seeds.h"
@@ -9,17 +10,8 @@
 namespace spillway::test {
 namespace {
 
-Mesh square() {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0.5}, {0, 1, -2}, {1, 1, 3}};
-  mesh.corners = {0, 1, 2, 2, 1, 3};
-  mesh.header.vertices = 4;
-  mesh.header.simplices = 2;
-  return mesh;
-}
-
 Mesh tetrahedron() {
-  Mesh mesh = square();
+  Mesh mesh = square_mesh();
   mesh.header.dimension = 3;
   mesh.corners = {0, 1, 2, 3};
   mesh.header.simplices = 1;
@@ -42,21 +34,21 @@ Mesh repeated(Mesh mesh) {
 
 /// A mesh with all that the format holds, besides plain ones.
 std::vector<Mesh> meshes_for(const MeshFormat& format) {
-  std::vector<Mesh> meshes = {square(), with_lattice(square(), format)};
+  std::vector<Mesh> meshes = {square_mesh(), with_lattice(square_mesh(), format)};
   if (format.most_dimension == 3) meshes.push_back(tetrahedron());
   if (format.holds_input_index) {
-    meshes.push_back(square());
+    meshes.push_back(square_mesh());
     add_input_index(meshes.back());
   }
   if (format.held_attributes != HeldAttributes::kNone) {
-    meshes.push_back(square());
+    meshes.push_back(square_mesh());
     add_attributes(meshes.back(), colours(), 1, 65535);
   }
   if (format.held_attributes == HeldAttributes::kAll) {
-    meshes.push_back(square());
+    meshes.push_back(square_mesh());
     add_attributes(meshes.back(), every_type(), 2, 100);
   }
-  if (format.holds_offsets) meshes.push_back(repeated(square()));
+  if (format.holds_offsets) meshes.push_back(repeated(square_mesh()));
   return meshes;
 }
 

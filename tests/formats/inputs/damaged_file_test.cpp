@@ -13,6 +13,7 @@
 #include "formats/points/point_formats.h"
 #include "tests/error_facts.h"
 #include "tests/formats/meshes/export_test_helpers.h"
+#include "tests/formats/meshes/square_mesh.h"
 #include "tests/formats/points/copc/copc_file.h"
 #include "tests/formats/points/las/las_file.h"
 #include "tests/formats/points/laz/laz_encoder/laz_file.h"
@@ -137,20 +138,11 @@ TEST(DamagedPointFormats, AreAllThatThereAre) {
   }
 }
 
-Mesh square() {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0.5}, {0, 1, -2}, {1, 1, 3}};
-  mesh.corners = {0, 1, 2, 2, 1, 3};
-  mesh.header.vertices = 4;
-  mesh.header.simplices = 2;
-  return mesh;
-}
-
 /// A file that the square is written to. `mesh` is the mesh's name if it is in several files.
 std::string mesh_as(const std::string& path, const std::string& mesh = "") {
   FaultyFileSystem files;
   const std::string name = mesh.empty() ? path : mesh;
-  write_mesh(files, name, mesh_format(name, ""), square());
+  write_mesh(files, name, mesh_format(name, ""), square_mesh());
   return files.files.at(path);
 }
 
@@ -163,7 +155,7 @@ std::vector<Damage> damaged_meshes() {
        [](std::size_t) { return at_line(10); }},
       {"ply-ascii", "b.ply",
        [] {
-         return replaced(mesh_bytes(mesh_format("", "ply-ascii"), square()), "0 0 0", "0 0 x");
+         return replaced(mesh_bytes(mesh_format("", "ply-ascii"), square_mesh()), "0 0 0", "0 0 x");
        },
        always(at_line(11))},
       {"obj", "a.obj", [] { return std::string("v 0 0 0\nv 1 0 0\nv 0 1 x\nf 1 2 3\n"); },

@@ -10,6 +10,7 @@
 #include "formats/meshes/vtu/vtu_format.h"
 #include "tests/formats/meshes/broken_files.h"
 #include "tests/formats/meshes/mesh_test_helpers.h"
+#include "tests/formats/meshes/square_mesh.h"
 
 namespace spillway::test {
 namespace {
@@ -28,15 +29,6 @@ std::string obj_text() { return "v 0 0 0\nv 1 0 .5\nv 0 1 -2\nv 1 1 3\nf 1 2 3\n
 
 std::string off_text() { return "OFF\n4 2 0\n0 0 0\n1 0 .5\n0 1 -2\n1 1 3\n3 0 1 2\n3 2 1 3\n"; }
 
-Mesh square() {
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0.5}, {0, 1, -2}, {1, 1, 3}};
-  mesh.corners = {0, 1, 2, 2, 1, 3};
-  mesh.header.vertices = 4;
-  mesh.header.simplices = 2;
-  return mesh;
-}
-
 /// The error of the text with `from` replaced.
 std::string error_of_change(const std::string& path, const std::string& bytes,
                             const std::string& from, const std::string& to) {
@@ -47,7 +39,7 @@ std::string error_of_ply(const std::string& from, const std::string& to) {
   return error_of_change("a.ply", ascii_ply(), from, to);
 }
 
-std::string binary_ply() { return mesh_bytes(kPlyMesh, square()); }
+std::string binary_ply() { return mesh_bytes(kPlyMesh, square_mesh()); }
 
 TEST(PlyCorruption, BadHeader) {
   EXPECT_THAT(error_of_ply("ply\n", "plx\n"), HasSubstr("this is not a PLY file"));
@@ -245,7 +237,7 @@ TEST(OffCorruption, VertexNumberOutOfRange) {
 }
 
 std::string vtu(int dimension = 2) {
-  Mesh mesh = square();
+  Mesh mesh = square_mesh();
   if (dimension == 3) {
     mesh.header.dimension = 3;
     mesh.header.simplices = 1;
@@ -298,7 +290,7 @@ TEST(VtuCorruption, BadHeader) {
 }
 
 TEST(VtuCorruption, BadFieldData) {
-  Mesh mesh = square();
+  Mesh mesh = square_mesh();
   mesh.header.lattice = IntegerLattice{{1, 1, 1}, {10, 20, 30}};
   const std::string good = mesh_bytes(kVtuMesh, mesh);
   EXPECT_THAT(error_of_change("a.vtu", good, "10 20 30", "10 20"), HasSubstr("six numbers"));
@@ -365,7 +357,7 @@ TEST(VtuCorruption, CellsOfOtherTypes) {
 }
 
 TEST(VtuCorruption, PointCloud) {
-  Mesh mesh = square();
+  Mesh mesh = square_mesh();
   mesh.corners.clear();
   mesh.header.simplices = 0;
   EXPECT_THAT(
@@ -379,7 +371,9 @@ struct NpyFiles {
   std::string& vertices = files.files["a_vertices.npy"];
   std::string& simplices = files.files["a_simplices.npy"];
 
-  explicit NpyFiles(const Mesh& mesh = square()) { write_mesh(files, "a.npy", kNpyMesh, mesh); }
+  explicit NpyFiles(const Mesh& mesh = square_mesh()) {
+    write_mesh(files, "a.npy", kNpyMesh, mesh);
+  }
   std::string error() {
     files.seekable = false;
     error_of([&] { read_mesh(files, "a.npy"); });
@@ -444,7 +438,7 @@ TEST(NpyMeshCorruption, CoordinateNotFinite) {
 }
 
 TEST(NpyMeshCorruption, InputIndexOfAnotherMesh) {
-  Mesh mesh = square();
+  Mesh mesh = square_mesh();
   add_input_index(mesh);
   NpyFiles npy(mesh);
   mesh.vertices.pop_back();
@@ -458,7 +452,7 @@ TEST(NpyMeshCorruption, InputIndexOfAnotherMesh) {
 }
 
 TEST(NpyMeshCorruption, FlatVerticesOfTetrahedra) {
-  NpyFiles npy(square());
+  NpyFiles npy(square_mesh());
   npy.vertices = replaced(npy.vertices, "(4, 3)", "(6, 2)");
   npy.simplices = replaced(npy.simplices, "(2, 3)", "(1, 4)");
   npy.simplices.resize(npy.simplices.size() - 16);
