@@ -52,6 +52,8 @@ FAMILIES = {
     "proved": ([MANY, MESH], ["check", "mesh.spm"]),
     "sealed": ([MANY, SEALED], ["triangulate", "in.spp", "-o", "out.spm"]),
     "converted": ([POINTS, MESH], ["convert", "mesh.spm", "-o", "out.obj"]),
+    "rank_0": ([POINTS], ["triangulate", "in.las", "-o", "out.spm", "--tile-points", "2000"]),
+    "rank_1": ([POINTS], ["triangulate", "in.las", "-o", "out.ply", "--tile-points", "2000"]),
     "batch": ([TILES], ["batch", "in*.las", "--to", "spm,ply", "-j", "1",
                          "--output-dir", "out"]),
 }
@@ -78,8 +80,12 @@ ERRORS = {
 OF_FILES = [call for call in ERRORS if call not in ("memory", "thread")]
 REASONS = {"memory": "memory", "thread": "thread", "scratch": "tmp/"}
 CHECKSUMS = {"proved": "mesh.spm", "sealed": "in.spp"}  # families whose input has them
-# Its libraries end the process where they get no memory, and wait forever for a thread.
+OF_RANKS = {"rank_0": 0, "rank_1": 1}  # families of two processes, and which of them fails
+# Their libraries end the process where they get no memory, and wait forever for a thread.
 NEED_GDAL = {"dem", "contour"}
+ONLY_FILES = NEED_GDAL | OF_RANKS.keys()
+MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
+ROOT_MAY = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 OF_SCRATCH = {"FAULT_FOLDER": "tmp"}  # within the folder of the run
 
 
@@ -108,6 +114,17 @@ class Family:
         return Run(self, name, environment)
 
 
+def command_with_fault(family, injected):
+    """The command whose one process has this in its environment; of ranks, each has its TMPDIR."""
+    command = [family.options.command, *family.arguments]
+    failing = ["env", *[f"{name}={value}" for name, value in injected.items()], *command]
+    if family.name not in OF_RANKS:
+        return failing
+    ranks = [["env", f"TMPDIR={injected['TMPDIR']}", *command]] * 2
+    ranks[OF_RANKS[family.name]] = failing
+    return [*MPIRUN, "-n", "1", *ranks[0], ":", "-n", "1", *ranks[1]]
+
+
 class Run:
     """One run in a folder of its own, with what it said and left."""
 
@@ -120,8 +137,8 @@ class Run:
         injected = {"LD_PRELOAD": family.options.injector, "FAULT_FOLDER": str(within),
                     "TMPDIR": str(folder / "tmp"), **environment}
         try:
-            ended = subprocess.run([family.options.command, *family.arguments], cwd=folder,
-                                   env={**os.environ, **injected}, capture_output=True, timeout=60)
+            ended = subprocess.run(command_with_fault(family, injected), cwd=folder,
+                                   env={**os.environ, **ROOT_MAY}, capture_output=True, timeout=60)
             self.code, self.text = ended.returncode, ended.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired:
             self.code, self.text = None, "does not end"
@@ -191,7 +208,7 @@ def evenly(count, most):
 
 def cases_of(family, options):
     for call in options.calls:
-        if call in ("memory", "thread") and family.name in NEED_GDAL:
+        if call in ("memory", "thread") and family.name in ONLY_FILES:
             continue
         if call == "input" and family.name not in CHECKSUMS:
             continue
@@ -229,6 +246,7 @@ def main():
     parser.add_argument("--most", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args()
+    options.command, options.injector = map(os.path.abspath, (options.command, options.injector))
     options.calls = OF_FILES if options.calls == "files" else options.calls.split(",")
     failed = runs = borne = 0
     with tempfile.TemporaryDirectory(prefix="faults.") as options.work, \

@@ -153,6 +153,8 @@ def random_options(rng, case):
     maybe(0.1, "--kernel", rng.choice(["spillway", "cgal"]) if case.dim < 4 else "spillway")
     maybe(0.5 if n < 500_000 else 1, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
     maybe(0.2, "--no-trust-headers")
+    if not (case.pipe_in or case.pipe_out):
+        maybe(0.1, "--resume", "state", "--checkpoint-every", "0.001")
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
         maybe(0.2, "--id")
     extent = max((np.ptp(one.world()[:, :case.dim]) for one in case.inputs), default=0)
@@ -190,7 +192,8 @@ def random_case(seed, command, folder, kind="runs", most=20000):
     world = np.vstack([one.world() for one in case.inputs]) if same_width(case) else None
     offsets = {tuple(one.offset) for one in case.inputs if one.offset is not None}
     if world is not None:
-        case.filters = filters.random_filters(rng, world, dim, len(offsets) < 2)
+        case.filters = filters.random_filters(rng, world, dim, len(offsets) < 2,
+                                              all(one.scale is not None for one in case.inputs))
     case.form = str(rng.choice({2: FORMATS, 3: IN_SPACE}.get(dim, OF_MORE)))
     lies = any(one.lies and one.form in ("las", "laz") for one in case.inputs)
     if len(case.inputs) == 1 and case.inputs[0].form not in point_files.NOT_PIPED and not lies:

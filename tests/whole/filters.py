@@ -1,6 +1,8 @@
 """Filters of points: options of the command, and what they keep by the driver's own reckoning."""
 import numpy as np
 
+from point_files import attributes_of
+
 
 class Filter:
     """`arguments` of the command; `keep(world, numbers, counts)` gives those of the numbered points
@@ -73,6 +75,29 @@ def where(rng, world, exact):
     return Filter(["--where", text], keep)
 
 
+def classes(rng, world, exact):
+    first, second = (int(one) for one in np.sort(rng.choice(7, 2, replace=False)))
+    which = str(rng.choice(["--keep-class", "--drop-class"]))
+
+    def keep(points, numbers, counts):
+        of_points, _, _ = attributes_of(points[numbers])
+        within = (of_points >= first) & (of_points <= second)
+        return numbers[within if which == "--keep-class" else ~within]
+
+    return Filter([which, f"{first}-{second}"], keep)
+
+
+def returns(rng, world, exact):
+    which = str(rng.choice(["first", "last", "single", "2", "1,3"]))
+
+    def keep(points, numbers, counts):
+        _, number, of_pulse = attributes_of(points[numbers])
+        return numbers[{"first": number == 1, "last": number == of_pulse, "single": of_pulse == 1,
+                        "2": number == 2, "1,3": number != 2}[which]]
+
+    return Filter(["--returns", which], keep)
+
+
 def thin(rng, world, exact):
     """Cells whose sides are powers of two, so that their numbers are exact."""
     span = max(float(np.max(np.abs(world[:, :2]))), 1e-300)
@@ -96,11 +121,14 @@ def thin(rng, world, exact):
     return Filter(["--thin", f"{side!r}:{which}"], keep)
 
 
-def random_filters(rng, world, dim, exact):
-    """In the order in which the command applies them. `exact`: bounds may be those of points."""
+def random_filters(rng, world, dim, exact, attributes):
+    """In the order in which the command applies them. `exact`: bounds may be those of points;
+    `attributes`: points have classes and returns."""
     if len(world) < 2 or rng.random() < 0.7:
         return []
     known = [every, where, bounds]
+    if attributes:
+        known += [classes, returns]
     if world.shape[1] > 2:
         known.append(z_range)
     if dim == 2 and np.all(np.isfinite(world)) and np.max(np.abs(world)) < 1e12:

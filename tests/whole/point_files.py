@@ -131,6 +131,15 @@ def write_lattice(points, command, name):
         convert(command, [las, "-o", name])
 
 
+def attributes_of(world):
+    """Class, number of the return, and how many returns its pulse has, by the bits of x and y."""
+    bits = (np.ascontiguousarray(world[:, :2]) + 0.0).view(np.uint64)
+    mixed = (bits[:, 0] * np.uint64(0x9E3779B97F4A7C15) + bits[:, 1]) * np.uint64(0xD1B54A32D192ED03)
+    mixed >>= np.uint64(40)
+    of_pulse = mixed // 7 % 3 + 1
+    return mixed % 7, mixed // 21 % of_pulse + 1, of_pulse
+
+
 def las_bytes(points):
     """LAS 1.2, point format 0."""
     rows = points.points.astype(np.int64)
@@ -148,5 +157,7 @@ def las_bytes(points):
     struct.pack_into("<6d", head, 179, *[v for axis in range(3) for v in (high[axis], low[axis])])
     records = np.zeros(len(rows), dtype=[("xyz", "<i4", 3), ("rest", "u1", 8)])
     records["xyz"] = rows
-    records["rest"][:, 2] = 9  # return 1 of 1
+    classes, number, of_pulse = attributes_of(world)
+    records["rest"][:, 2] = number + of_pulse * 8
+    records["rest"][:, 3] = classes
     return bytes(head) + records.tobytes()

@@ -82,13 +82,17 @@ def call(arguments, case):
     return done
 
 
-def check_clean(case):
+def check_clean(case, done):
     left = os.listdir("scratch")
     if left:
         raise Failed("temporary files are left", ", ".join(left))
     unfinished = [name for name in os.listdir("out") if name.endswith((".part", ".resume"))]
-    if unfinished:
-        raise Failed("unfinished files are left", ", ".join(unfinished))
+    if done.returncode != 0 and case.option("--resume"):  # it keeps what it can go on from
+        shutil.rmtree("state", ignore_errors=True)
+        for name in unfinished:
+            os.remove(f"out/{name}")
+    elif unfinished or os.path.exists("state"):
+        raise Failed("unfinished files are left", ", ".join(unfinished + os.listdir(".")))
 
 
 def give_memory(case, done):
@@ -139,7 +143,7 @@ def run_case(case, binary, cgal, folder):
     told = []
     for _ in range(8):
         done = call(command_of(case, binary), case)
-        check_clean(case)
+        check_clean(case, done)
         if not give_memory(case, done):
             break
         if told and case.dim == 2:

@@ -15,6 +15,7 @@
 #include "formats/meshes/common/mesh_records.h"
 #include "formats/meshes/common/mesh_stream.h"
 #include "formats/meshes/common/mesh_writer.h"
+#include "formats/points/attributes/further_coordinates.h"
 
 namespace spillway::formats {
 
@@ -24,14 +25,15 @@ struct MeshFormat;
 struct MeshContents {
   int dimension = 2;
   bool has_input_index = false;
-  bool has_attributes = false;
+  bool has_attributes = false;  // beside its coordinates
   bool is_periodic = false;
 };
 
 /// Those that a header tells: MeshFileHeader or MeshStreamHeader.
 template <typename Header>
 MeshContents contents_of(const Header& header) {
-  return {header.dimension, header.has_input_index, !header.attributes.empty(),
+  return {header.dimension, header.has_input_index,
+          !without_further_coordinates(header.attributes, header.dimension).empty(),
           header.periodic.has_value()};
 }
 

@@ -94,20 +94,28 @@ class BlockContent final : public VtuContent {
   bool next_block() {
     if (block_ == compressed_sizes_.size()) return false;
     const std::uint64_t size = compressed_sizes_[block_];
+    const bool is_last = block_ + 1 == compressed_sizes_.size();
+    const std::uint64_t wanted = is_last ? size_of_last_ : size_of_block_;
     check_room(bytes_, size, "a block");
+    if (expands_too_far(size, wanted)) {
+      fail_in_vtu(
+          bytes_.input(),
+          fmt::format("block {} of an array is said to hold {} bytes in {}, more than {} times "
+                      "as many; the file is corrupt, or its blocks are too large",
+                      block_, wanted, size, kMostBlockExpansion));
+    }
     compressed_.clear();
     while (compressed_.size() < size) {
       const std::size_t had = compressed_.size();
       compressed_.resize(had + std::min<std::uint64_t>(kStep, size - had));
       bytes_.read(std::span(compressed_).subspan(had));
     }
-    const bool is_last = ++block_ == compressed_sizes_.size();
-    const std::uint64_t wanted = is_last ? size_of_last_ : size_of_block_;
     if (!decompress_block(compression_, compressed_, wanted, content_)) {
       fail_in_vtu(bytes_.input(),
                   fmt::format("block {} of an array is corrupt: it does not decompress to {} bytes",
-                              block_ - 1, wanted));
+                              block_, wanted));
     }
+    ++block_;
     at_ = 0;
     return true;
   }

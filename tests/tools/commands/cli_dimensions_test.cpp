@@ -268,5 +268,13 @@ TEST_F(HigherDimensions, GoOnAfterARunThatWasKilled) {
   work_.succeed("spillway check -q a.spm --points in.npy");
 }
 
+TEST_F(HigherDimensions, HaveNoFileOfAttributesAmongTheNpyArraysForTheirCoordinates) {
+  work_.succeed("spillway generate -q uniform -n 200 --dim 4 -o in.npy");
+  work_.succeed("spillway triangulate -q --dim 4 in.npy -o a.npy --resume state");
+  EXPECT_EQ(work_.succeed("ls a*"), "a_simplices.npy\na_vertices.npy\n");
+  work_.write("a_attributes.npy", "of an earlier mesh");
+  expect_error("triangulate --dim 4 in.npy -o a.npy", "a_attributes.npy of an earlier mesh");
+}
+
 }  // namespace
 }  // namespace spillway::test

@@ -491,6 +491,20 @@ TEST(VtuReader, LengthsThatTheFileDoesNotHoldTakeNoMemory) {
   }
 }
 
+TEST(VtuReader, BlocksThatAreMadeToFillTheMemoryAreRefused) {
+  Style style{.name = "bomb", .format = "appended", .encoding = "raw"};
+  style.compressor = "vtkLZMADataCompressor";
+  const std::string good = square_vtu(style);
+  const std::size_t points =
+      std::stoull(good.substr(good.find("offset=\"", good.find("\"p\"")) + 8));
+  const std::size_t size_of_last = good.find("   _") + 4 + points + 16;
+  std::string bad = good;
+  put(bad, size_of_last, std::uint64_t{1} << 30);
+  EXPECT_THAT(error_of_bytes("a.vtu", bad), HasSubstr("is said to hold 1073741824 bytes in"));
+  put(bad, size_of_last, std::uint64_t{64} << 20);  // of which any block may have so many
+  EXPECT_THAT(error_of_bytes("a.vtu", bad), HasSubstr("does not decompress to 67108864 bytes"));
+}
+
 TEST(VtuReader, CountsThatTheArraysDoNotHave) {
   for (const Style& style : all_styles()) {
     EXPECT_THAT(error_of_change(style, "NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""),
