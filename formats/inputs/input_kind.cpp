@@ -40,15 +40,15 @@ ContentKind kind_of_content(ProbedInput& input, MeshFormats formats) {
                                                            : ContentKind::kPoints;
   }
   InputBytes& source = input.source();
-  const std::string_view text = as_text(source.peek(kProbe));
   const MeshFormat* const told = mesh_format_of_content(source, formats);
   if (told != nullptr && told->is_stream()) return ContentKind::kMeshStream;
   if (is_named_stream && !begins_as_points(source.peek(kProbe))) {
     return told != nullptr ? ContentKind::kMesh : ContentKind::kMeshStream;
   }
   if (!is_pipe && is_mesh(input.beneath(), input.path(), formats)) return ContentKind::kMesh;
-  return stream_format_that_resembles(text, formats) != nullptr ? ContentKind::kMeshStream
-                                                                : ContentKind::kPoints;
+  const bool resembles =
+      stream_format_that_resembles(as_text(source.peek(kProbe)), formats) != nullptr;
+  return resembles ? ContentKind::kMeshStream : ContentKind::kPoints;
 }
 
 }  // namespace spillway::formats

@@ -86,15 +86,16 @@ const PointFormat* text_format(PointFormats formats) {
 
 /// By the first bytes, then the name; what neither knows is text if it looks like it.
 const PointFormat& format_of(InputBytes& source, const std::string& path, PointFormats formats) {
-  const std::span<const std::byte> first_bytes = source.peek(kProbe);
+  const std::string first_bytes(as_text(source.peek(kProbe)));  // what follows may peek further
   const PointFormat* const text = text_format(formats);
-  const PointFormat* const told = point_format_of_bytes(as_text(first_bytes), formats);
+  const PointFormat* const told = point_format_of_bytes(first_bytes, formats);
   if (told != nullptr) return *told;
   if (const PointFormat* const format = point_format_of_header(source, formats)) return *format;
-  if (text != nullptr && compression_of_content(first_bytes) != Compression::kNone) return *text;
+  const Compression compression = compression_of_content(std::as_bytes(std::span(first_bytes)));
+  if (text != nullptr && compression != Compression::kNone) return *text;
   refuse_what_is_no_points(source);
   if (const PointFormat* const format = point_format_of_path(path, formats)) return *format;
-  if (text != nullptr && looks_like_text(as_text(first_bytes))) return *text;
+  if (text != nullptr && looks_like_text(first_bytes)) return *text;
   throw BadInput(
       source.name(),
       fmt::format("unknown format: the file begins neither {} nor as text; convert it or "
