@@ -18,7 +18,7 @@ class InputBytes : public InputFile {
  public:
   explicit InputBytes(std::unique_ptr<InputFile> file) : file_(std::move(file)) {}
 
-  /// The next `count` bytes, fewer if the file ends before; they stay unread. Valid until the next call.
+  /// The next `count` bytes, fewer at the end of the file; unread still. Valid until the next call.
   std::span<const std::byte> peek(std::size_t count);
 
   /// Throws Failure if there is nothing to read.

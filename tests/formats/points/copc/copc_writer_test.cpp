@@ -424,7 +424,7 @@ TEST(CopcWriter, LeavesOutRecordsOfWaveforms) {
   EXPECT_EQ(value_at<std::uint16_t>(file, 6) & 6, 0);
   PointReaderOptions options;
   options.metadata = true;
-  const auto& records = read_back(file, options).header.las_metadata->records;
+  const std::vector<LasVlr> records = read_back(file, options).header.las_metadata->records;
   EXPECT_THAT(records, ::testing::Not(Contains(descriptor)));
   EXPECT_THAT(records, ::testing::Not(Contains(waveforms)));
 }
