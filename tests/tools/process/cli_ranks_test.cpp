@@ -32,13 +32,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Containers run tests as root, which mpirun refuses unless it is told twice.
-const std::string kMpirun = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " +
-                            mpirun_path() + " --oversubscribe --bind-to none";
-
 /// A command line that runs so many ranks.
 std::string ranks(int count, const std::string& arguments) {
-  return fmt::format("{} -n {} {} {}", kMpirun, count, command_path(), arguments);
+  return fmt::format("{} -n {} {} {}", mpirun_command(), count, command_path(), arguments);
 }
 
 /// The mesh that one process makes, and the same of ranks.
@@ -326,7 +322,7 @@ TEST_F(RanksOfTheCommand, KeepTilesOnDisksOfTheirOwn) {
   const std::string common = "triangulate -q --memory 32M in.las -o b.spm --stats s.json";
   work_.succeed(
       fmt::format("{0} -n 1 {1} {2} --scratch-folder one : -n 1 {1} {2} --scratch-folder two",
-                  kMpirun, command_path(), common));
+                  mpirun_command(), command_path(), common));
   const auto stats = nlohmann::json::parse(work_.read("s.json"));
   for (const auto& rank : stats.at("ranks").at("each")) EXPECT_GT(rank.at("spilled_bytes"), 0);
   EXPECT_TRUE(fs::is_empty(work_.folder() / "one"));
@@ -434,7 +430,7 @@ TEST_F(RanksThatFail, SayWhatIsWrongWithOneOfThem) {
   work_.succeed("mkdir one two && spillway generate -q terrain -n 90000 -o in.las");
   const auto both = [&](const std::string& first, const std::string& second) {
     const std::string common = command_path() + " triangulate -q in.las -o b.spm ";
-    return fmt::format("{0} -n 1 {1} {2} : -n 1 {1} {3}", kMpirun, common, first, second);
+    return fmt::format("{0} -n 1 {1} {2} : -n 1 {1} {3}", mpirun_command(), common, first, second);
   };
   expect_failure(both("--scratch-folder one", "--scratch-folder nowhere"),
                  "--scratch-folder: cannot write to nowhere");
@@ -451,7 +447,7 @@ TEST_F(RanksThatFail, TellWhichOfThemSeesAnotherFileOfTheSameName) {
       "mkdir one two && spillway generate -q terrain -n 300000 -o one/in.las && "
       "spillway generate -q terrain -n 300000 --seed 2 -o two/in.las");
   const auto job = [&] {
-    return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", kMpirun,
+    return fmt::format("{0} -n 1 -wdir one {1} {2} : -n 1 -wdir two {1} {2}", mpirun_command(),
                        command_path(), "triangulate -q in.las -o ../b.spm");
   };
   expect_failure(job(), "in.las: rank 1 reads another file of this name");
