@@ -135,13 +135,18 @@ class RunOfThreads : public tbb::task_scheduler_observer {
       : task_scheduler_observer(arena), memory_(memory) {
     observe(true);
   }
-  ~RunOfThreads() override { observe(false); }
+  ~RunOfThreads() override {
+    observe(false);  // waits for calls that have begun
+    tell_acquire(this);
+  }
 
   void on_scheduler_entry(bool is_worker) override {
     if (is_worker) work_with(&memory_);
+    tell_release(this);
   }
   void on_scheduler_exit(bool is_worker) override {
     if (is_worker) work_with(nullptr);
+    tell_release(this);
   }
 
  private:

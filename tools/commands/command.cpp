@@ -39,8 +39,8 @@ constexpr const char* kExamples =
 
 /// The version, and on a line of its own what this build lacks.
 std::string version_text() {
-  const std::string lacks = SPILLWAY_LACKS;
-  return "spillway " SPILLWAY_VERSION + (lacks.empty() ? "" : "\n" + lacks);
+  constexpr std::string_view kLacks = SPILLWAY_LACKS;
+  return fmt::format("spillway " SPILLWAY_VERSION "{}{}", kLacks.empty() ? "" : "\n", kLacks);
 }
 
 /// Says what is wrong with the command line, and what may have been meant.

@@ -55,6 +55,7 @@ void let_go_of_program_pages() {
     is_changed = is_changed || tells_of_changes(line);
     const bool is_last = line.starts_with("VmFlags:");
     if (!is_last || is_changed || !mapping.is_of_file) continue;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): the kernel writes addresses as numbers.
     ::madvise(reinterpret_cast<void*>(mapping.begin), mapping.end - mapping.begin, MADV_DONTNEED);
   }
 }
