@@ -39,8 +39,8 @@ constexpr const char* kExamples =
 
 /// The version, and on a line of its own what this build lacks.
 std::string version_text() {
-  constexpr std::string_view kLacks = SPILLWAY_LACKS;
-  return fmt::format("spillway " SPILLWAY_VERSION "{}{}", kLacks.empty() ? "" : "\n", kLacks);
+  constexpr const char* kLacks = SPILLWAY_LACKS;
+  return fmt::format("spillway " SPILLWAY_VERSION "{}{}", *kLacks == '\0' ? "" : "\n", kLacks);
 }
 
 /// Says what is wrong with the command line, and what may have been meant.
