@@ -133,6 +133,7 @@ class RunOfThreads : public tbb::task_scheduler_observer {
  public:
   RunOfThreads(tbb::task_arena& arena, RunMemory& memory)
       : task_scheduler_observer(arena), memory_(memory) {
+    tell_release(this);
     observe(true);
   }
   ~RunOfThreads() override {
@@ -141,6 +142,7 @@ class RunOfThreads : public tbb::task_scheduler_observer {
   }
 
   void on_scheduler_entry(bool is_worker) override {
+    tell_acquire(this);
     if (is_worker) work_with(&memory_);
     tell_release(this);
   }
