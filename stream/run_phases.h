@@ -25,7 +25,7 @@ class RunPhases : protected Resting {
  public:
   RunPhases(const RunPhases&) = delete;
   RunPhases& operator=(const RunPhases&) = delete;
-  virtual ~RunPhases() = default;
+  ~RunPhases() override = default;
 
   /// Inside of with_threads(threads()).
   void walk();

@@ -122,7 +122,7 @@ MemoryPlan plan_memory(std::uint64_t limit, int dimension, unsigned wanted_threa
     const double parts = static_cast<double>(std::max(whole, limit)) /
                          static_cast<double>(std::max(limit, std::uint64_t{1}));
     const auto least = static_cast<std::uint64_t>(
-        std::ceil(static_cast<double>(costs.least_limit / kMiB) * parts));
+        std::ceil(static_cast<double>(costs.least_limit) / static_cast<double>(kMiB) * parts));
     throw TooSmallLimit(fmt::format("the memory limit is too small: {} MiB are the least{}", least,
                                     dimensions_text(dimension)),
                         {.enough = least * kMiB, .remedy = Remedy::kMemory});
