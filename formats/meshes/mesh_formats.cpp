@@ -153,7 +153,8 @@ std::string rounding_note(const MeshFormat& format, const std::string& path) {
   if (format.unknown_origin != nullptr && std::filesystem::is_regular_file(path, ignored)) {
     InputBytes source(disk().open(path));
     const std::optional<WorldPoint> origin = format.unknown_origin(source);
-    if (origin && *origin != WorldPoint{}) {
+    constexpr WorldPoint kNone{};
+    if (origin && *origin != kNone) {
       note += fmt::format(
           "; other programs find them without {}, {}, {}, the origin that {} names in "
           "its first bytes",

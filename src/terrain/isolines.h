@@ -36,8 +36,8 @@ class Levels {
   [[nodiscard]] Range between(double low, double high) const;
 
  private:
-  /// The least number whose level is above `height`.
-  [[nodiscard]] std::int64_t first_above(double height) const;
+  /// The least number whose level is above `low`.
+  [[nodiscard]] std::int64_t first_above(double low) const;
 
   double interval_ = 0;  ///< 0: the list counts
   double base_ = 0;

@@ -87,7 +87,7 @@ PointConversion to_program(const RunPoints& points, spillway::PointSink& sink, u
 AttributeChoice prepare_for(spillway::PointSink& sink, EnginePoints& points) {
   const auto* const file = OwnParts::of(sink);
   if (file != nullptr) points.settle_crs(file->crs_need());
-  const AttributeChoice choice =
+  AttributeChoice choice =
       file != nullptr ? file->wanted_attributes() : attribute_choice(sink.attributes_wanted());
   points.carry(choice);
   return choice;

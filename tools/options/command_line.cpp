@@ -159,7 +159,7 @@ Option Option::check(std::function<std::string(std::string&)> wrong) {
   return *this;
 }
 
-Option Option::each(std::function<void(const std::string&)> tell) {
+Option Option::each(const std::function<void(const std::string&)>& tell) {
   option_->each(tell);
   return *this;
 }
@@ -266,7 +266,7 @@ Option CommandLine::add_option(const std::string& names, std::vector<std::string
 }
 
 Option CommandLine::add_option(const std::string& names,
-                               std::function<void(const std::vector<std::string>&)> keep,
+                               const std::function<void(const std::vector<std::string>&)>& keep,
                                const std::string& description) {
   return Option(
       impl_->app->add_option_function<std::vector<std::string>>(names, keep, description));

@@ -46,7 +46,7 @@ class Option {
   /// write it in another way.
   Option check(std::function<std::string(std::string&)> wrong);
   /// Has each value told to `tell`.
-  Option each(std::function<void(const std::string&)> tell);
+  Option each(const std::function<void(const std::string&)>& tell);
   /// Takes one argument each time it is given, though it has several values.
   Option one_argument();
   /// Takes one argument at all, though it has several values.
@@ -121,7 +121,7 @@ class CommandLine {
                     const std::string& description);
   /// Likewise; `keep` is called with all of them.
   Option add_option(const std::string& names,
-                    std::function<void(const std::vector<std::string>&)> keep,
+                    const std::function<void(const std::vector<std::string>&)>& keep,
                     const std::string& description);
   /// Throws std::invalid_argument if there is no such option.
   void remove_option(const std::string& name);
