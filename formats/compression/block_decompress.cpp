@@ -54,11 +54,6 @@ bool decompress_by(const Filter& filter, std::span<const std::byte> compressed, 
 
 }  // namespace
 
-bool expands_too_far(std::uint64_t compressed_size, std::uint64_t size) {
-  constexpr std::uint64_t kFree = std::uint64_t{64} << 20;
-  return size > kFree && size / kMostBlockExpansion > compressed_size;
-}
-
 bool decompress_block(BlockCompression compression, std::span<const std::byte> compressed,
                       std::uint64_t size, std::vector<std::byte>& content) {
   switch (compression) {

@@ -13,11 +13,6 @@ namespace spillway::formats {
 /// How a block is compressed: by zlib (RFC 1950), as a block of LZ4, or as a stream of xz.
 enum class BlockCompression { kZlib, kLz4, kXz };
 
-/// A block of more than 64 MiB may have at most so many bytes for each compressed one. Blocks of xz
-/// that expand further are made to fill the memory; other programs write blocks of some megabytes.
-inline constexpr std::uint64_t kMostBlockExpansion = 2000;
-bool expands_too_far(std::uint64_t compressed_size, std::uint64_t size);
-
 /// Decompresses a block into `content`. False if it is corrupt or its content has not `size` bytes.
 /// Memory grows with what is decompressed, not with `size`.
 bool decompress_block(BlockCompression compression, std::span<const std::byte> compressed,

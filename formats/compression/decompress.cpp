@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "formats/bytes/bytes.h"
+#include "formats/compression/expansion.h"
 #include "formats/compression/lz4_filter.h"
 #include "src/error.h"
 
@@ -153,7 +154,7 @@ class LimitedExpansion : public InputFile {
   std::size_t read(std::span<std::byte> buffer) override {
     const std::size_t got = content_->read(buffer);
     given_ += got;
-    if (given_ > kFreeExpansion && given_ / max_expansion_ > source_.position()) {
+    if (expands_too_far(source_.position(), given_, max_expansion_)) {
       throw BadInput(source_.name(),
                      fmt::format("the {} data expands to more than {} times its size, before byte "
                                  "{}; if that is meant, decompress it first, or allow a larger "
@@ -168,8 +169,6 @@ class LimitedExpansion : public InputFile {
   [[nodiscard]] const std::string& name() const override { return source_.name(); }
 
  private:
-  static constexpr std::uint64_t kFreeExpansion = std::uint64_t{64} << 20;
-
   std::unique_ptr<InputFile> content_;
   const InputBytes& source_;
   Compression compression_;

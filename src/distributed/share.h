@@ -16,7 +16,7 @@ struct RankIndex {
   std::uint32_t rank = 0;
   std::uint32_t index = 0;
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const RankIndex&) const = default;
+  auto operator<=>(const RankIndex&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The name of the infinite vertex, above all others.

@@ -21,7 +21,7 @@ struct CornersKey {
   std::array<Index, Count> points;
   std::array<Periods<D>, Count> periods;
 
-  auto operator<=>(const CornersKey&) const = default;
+  auto operator<=>(const CornersKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// What is known of a cell of the copies.

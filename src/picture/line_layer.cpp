@@ -61,6 +61,7 @@ void LineLayer::draw(Point<2> a, Point<2> b, float strength) {
 }
 
 void LineLayer::draw_pixel(std::uint32_t column, std::uint32_t row, double strength) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): no strength is negative.
   const auto value = static_cast<std::uint8_t>(std::min(strength, 1.0) * 255 + 0.5);
   std::atomic<std::uint8_t>& pixel = strength_[std::size_t{row} * columns_ + column];
   std::uint8_t before = pixel;

@@ -25,7 +25,7 @@ struct Portal {
   Point<2> at{};
   Point<2> left{};
   Point<2> right{};
-  auto operator<=>(const Portal&) const = default;
+  auto operator<=>(const Portal&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// A line through portals, within its tolerance of where they are passed exactly: each pair of

@@ -16,7 +16,7 @@ struct GridSquare {
   std::int64_t column = 0;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const GridSquare&) const = default;
+  auto operator<=>(const GridSquare&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The square of a side that a place lies in, by the edges as they are computed.

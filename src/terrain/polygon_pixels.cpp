@@ -15,7 +15,7 @@ struct Crossing {
   std::uint32_t column;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const Crossing&) const = default;
+  auto operator<=>(const Crossing&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 std::uint32_t clamped(double number, std::uint32_t most) {

@@ -274,8 +274,11 @@ std::vector<PolygonWithHoles> polygons_of_edges(std::vector<BoundaryEdge> edges)
   for (Ring& ring : rings_of(without_opposites(std::move(edges)))) {
     std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
     const int turn = direction(ring);
-    if (turn > 0) polygons.push_back({.outer = std::move(ring), .holes = {}});
-    if (turn < 0) holes.push_back(std::move(ring));
+    if (turn > 0) {
+      polygons.push_back({.outer = std::move(ring), .holes = {}});
+    } else if (turn < 0) {
+      holes.push_back(std::move(ring));
+    }
   }
   std::ranges::sort(polygons, {}, &PolygonWithHoles::outer);
   std::ranges::sort(holes);

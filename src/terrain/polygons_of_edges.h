@@ -12,7 +12,7 @@ namespace spillway::terrain {
 struct BoundaryEdge {
   Point<2> from{};
   Point<2> to{};
-  auto operator<=>(const BoundaryEdge&) const = default;
+  auto operator<=>(const BoundaryEdge&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Distinct points; the last one is joined to the first one, which is the least in lexicographic

@@ -22,7 +22,7 @@ template <std::size_t K>
 struct Face {
   std::array<std::uint64_t, K> vertices;
   std::uint64_t owner;
-  auto operator<=>(const Face&) const = default;
+  auto operator<=>(const Face&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Sorts the faces and calls f(first, count) for each run of equal ones.

@@ -15,7 +15,7 @@ struct BlockPlace {
   std::uint32_t slot = kNowhere;
   std::uint32_t block = 0;
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const BlockPlace&) const = default;
+  auto operator<=>(const BlockPlace&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Where a vertex was announced in the stream: in which block, and as which of its vertices.

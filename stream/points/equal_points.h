@@ -33,7 +33,7 @@ class EqualPoints {
     std::uint64_t place = 0;
 
     // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-    auto operator<=>(const Rank&) const = default;
+    auto operator<=>(const Rank&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   [[nodiscard]] Rank rank_of(const LatticePoint& point, std::uint64_t place) const;
 

@@ -22,7 +22,7 @@ struct ShortEdge {
   std::uint32_t lesser = 0;
   std::uint32_t greater = 0;
   bool from_lesser = false;
-  auto operator<=>(const ShortEdge&) const = default;
+  auto operator<=>(const ShortEdge&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Of the edges of a block's triangles leaves those of one triangle: most have two in their block,

@@ -24,7 +24,7 @@ struct PointInPixel {
   double z = 0;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const PointInPixel&) const = default;
+  auto operator<=>(const PointInPixel&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Sorts points by pixel and height, by an external merge sort (D. Knuth, "The Art of Computer

@@ -25,7 +25,7 @@ using Position = std::array<float, 3>;
 
 constexpr std::uint64_t kTriangleBytes = 3 * sizeof(std::uint32_t);
 // What nine more numbers may take: the origin and the extent are known only at the end.
-constexpr std::size_t kRoomForNumbers = 9 * 28;
+constexpr std::size_t kRoomForNumbers = std::size_t{9} * 28;
 
 class GlbWriter : public CheckedMeshWriter {
  public:

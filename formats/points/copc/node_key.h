@@ -17,7 +17,7 @@ struct NodeKey {
   std::array<std::int32_t, 3> cell{};  ///< x, y, z among the 2^level along each axis
 
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const NodeKey&) const = default;
+  auto operator<=>(const NodeKey&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// An entry of a page of the hierarchy.

@@ -291,6 +291,7 @@ class Opening {
   /// Throws Failure if a comment names x, y or z in other columns than that reads, but not all
   /// columns.
   TextColumns columns_of_row() {
+    // NOLINTNEXTLINE(modernize-loop-convert): clang 14 does not take the library's reverse views.
     for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
       if (std::optional<TextColumns> columns = columns_of_comment(*comment)) return *columns;
     }

@@ -106,6 +106,7 @@ class Inserter {
     // A vertex's last owner is the kept one: follow each replacement to it, the latest first.
     std::vector<DroppedDuplicate> result;
     std::unordered_map<VertexId, VertexId> owner;
+    // NOLINTNEXTLINE(modernize-loop-convert): clang 14 does not take the library's reverse views.
     for (auto drop = drops_.rbegin(); drop != drops_.rend(); ++drop) {
       const auto known = owner.find(drop->kept);
       const VertexId kept = known == owner.end() ? drop->kept : known->second;

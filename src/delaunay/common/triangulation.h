@@ -18,7 +18,7 @@ struct SimplexId {
   std::uint32_t list;
   std::uint32_t index;
   // NOLINTNEXTLINE(modernize-use-nullptr): a false finding in what the compiler generates
-  auto operator<=>(const SimplexId&) const = default;
+  auto operator<=>(const SimplexId&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// No simplex: answers a search that found none.
@@ -81,7 +81,7 @@ struct SimplexList {
 struct DroppedDuplicate {
   VertexId dropped;
   VertexId kept;
-  auto operator<=>(const DroppedDuplicate&) const = default;
+  auto operator<=>(const DroppedDuplicate&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// A Delaunay triangulation in memory, finite and infinite simplices with their neighbours.

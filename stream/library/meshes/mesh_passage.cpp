@@ -33,7 +33,7 @@ VertexExtent find_vertices(MeshStreamReader& reader, RunWatch& watch) {
 std::uint64_t pass_mesh(MeshStreamReader& reader, const AttributeLayout& kept, BlockSink& blocks,
                         RunWatch& watch, unsigned threads) {
   const RecordSelection selection(reader.header().attributes, kept);
-  const auto corners = static_cast<std::size_t>(reader.header().dimension + 1);
+  const auto corners = static_cast<std::size_t>(reader.header().dimension) + 1;
   std::uint64_t simplices = 0;
   std::vector<Slot> slots(threads + 1);
   const auto source = [&](std::size_t slot) {
