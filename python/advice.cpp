@@ -57,6 +57,8 @@ std::string advice(const ErrorFacts& facts) {
       return ", or give force=True";
     case Remedy::kAttributes:
       return ", or leave attributes out, with attributes=[...]";
+    case Remedy::kExpansion:
+      return "; if that is meant, raise max_expansion";
     case Remedy::kNone:
     case Remedy::kOneFile:  // of runs over several processes, as the next one
     case Remedy::kRanks:

@@ -157,7 +157,8 @@ void bind_point_options(py::module_& module) {
       .def(py::init())
       .def_readwrite("format", &MeshOptions::format)
       .def_readwrite("crs", &MeshOptions::crs)
-      .def_readwrite("foreign_crs", &MeshOptions::foreign_crs);
+      .def_readwrite("foreign_crs", &MeshOptions::foreign_crs)
+      .def_readwrite("max_expansion", &MeshOptions::max_expansion);
   py::class_<PointFileOptions>(module, "PointFileOptions")
       .def(py::init())
       .def_readwrite("output_format", &PointFileOptions::format)

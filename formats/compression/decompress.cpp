@@ -156,11 +156,9 @@ class LimitedExpansion : public InputFile {
     given_ += got;
     if (expands_too_far(source_.position(), given_, max_expansion_)) {
       throw BadInput(source_.name(),
-                     fmt::format("the {} data expands to more than {} times its size, before byte "
-                                 "{}; if that is meant, decompress it first, or allow a larger "
-                                 "expansion",
+                     fmt::format("the {} data expands to more than {} times its size, before byte {}",
                                  name_of(compression_), max_expansion_, source_.position()),
-                     at_byte(source_.position()));
+                     at_byte(source_.position()), Remedy::kExpansion);
     }
     return got;
   }

@@ -76,16 +76,17 @@ void refuse_pipe_of_tables(const InputBytes& source, const std::string& path,
       at_byte(0));
 }
 
-Mesh read_as(const MeshFormat& format, std::unique_ptr<InputBytes> source,
-             const std::string& path) {
+Mesh read_as(const MeshFormat& format, std::unique_ptr<InputBytes> source, const std::string& path,
+             std::uint64_t max_expansion) {
   refuse_pipe_of_tables(*source, path, format);
   if (format.is_table()) return format.read_table(path);
   if (format.is_stream()) return collect_mesh(*format.open_stream(std::move(source)));
+  if (format.read_compressed != nullptr) return format.read_compressed(*source, max_expansion);
   return format.read(*source);
 }
 
 Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string& format_name,
-                   MeshFormats formats) {
+                   MeshFormats formats, std::uint64_t max_expansion) {
   const MeshFormat* format = format_name.empty() ? format_of_files(files, path, formats)
                                                  : &mesh_format(path, format_name, formats);
   if (format != nullptr && format->file_set != nullptr) {
@@ -98,7 +99,7 @@ Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string
   if (format == nullptr) refuse_what_is_no_mesh(*source, path, formats);
   if (format == nullptr) format = mesh_format_of_name(path, formats);
   if (format == nullptr) fail_for_unknown(*source, formats);
-  Mesh mesh = read_as(*format, std::move(source), path);
+  Mesh mesh = read_as(*format, std::move(source), path, max_expansion);
   mesh.format = format->name;
   return mesh;
 }
@@ -165,8 +166,8 @@ bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats) {
 }
 
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name,
-               MeshFormats formats) {
-  Mesh mesh = read_any_mesh(files, path, format_name, formats);
+               MeshFormats formats, std::uint64_t max_expansion) {
+  Mesh mesh = read_any_mesh(files, path, format_name, formats, max_expansion);
   check_lattice_of(mesh, path);
   return mesh;
 }

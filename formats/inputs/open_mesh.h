@@ -20,9 +20,11 @@ bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats = m
 /// `X_simplices.npy`) by either name or as `X.npy`, of tables those on the machine's own disk.
 /// `format_name` is a format's name; if it is empty, the first bytes tell, then the path. Checked
 /// before anything is allocated: counts against the file's size, vertex numbers against the vertex
-/// count. Coordinates are finite. Throws Failure that names the file and the byte or line.
+/// count, and that no compressed block expands_too_far() by
+/// `max_expansion`. Coordinates are finite. Throws Failure that names the file and the byte or line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "",
-               MeshFormats formats = mesh_formats());
+               MeshFormats formats = mesh_formats(),
+               std::uint64_t max_expansion = kMostExpansion);
 
 /// The whole of a stream of which nothing has been read, in output coordinates.
 Mesh collect_mesh(MeshStreamReader& stream);

@@ -48,6 +48,7 @@ enum class Remedy {
   kForce,            ///< replacing an input by what holds less, if that is meant
   kGivenCrs,         ///< naming the coordinate system of inputs that name none
   kAttributes,       ///< leaving out attributes of points
+  kExpansion,        ///< letting compressed data become larger
 };
 
 /// What a place in a file is counted in.

@@ -107,6 +107,9 @@ struct MeshOptions {
   /// Nothing is transformed. With `foreign_crs` also of a mesh that names another one.
   std::string crs{};
   bool foreign_crs = false;
+  /// Blocks of VTU of more than 64 MiB, and so many times as long as what is compressed, are an
+  /// error: they are made to fill the memory. At least 1.
+  std::uint64_t max_expansion = 2000;
 };
 
 /// A mesh file of any format that is read; "-" is standard input, for formats of streams. Throws

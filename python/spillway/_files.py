@@ -35,7 +35,7 @@ from ._options import (
     mesh_file_options,
     mesh_options,
     move_clip,
-    names_for,
+    names_of_points,
     point_options,
     put,
     put_all,
@@ -417,8 +417,8 @@ def info(
     paths = [as_path(file, "file")]
     run = make_run(options)
     if is_mesh(run, paths, None, options):
-        refuse(options, names_for("points"), "on a mesh")
-        return MeshInfo(**_spillway.mesh_info(run, paths[0], mesh_options({}, None)))
+        refuse(options, names_of_points(), "on a mesh")
+        return MeshInfo(**_spillway.mesh_info(run, paths[0], mesh_options(options, None)))
     return PointsInfo(**_spillway.points_info(run, paths[0], point_options(options, 2), fast))
 
 
@@ -460,12 +460,12 @@ def check(
     path = as_path(mesh, "mesh")
     source = None
     if points is None:
-        refuse(options, names_for("points"), "without points")
+        refuse(options, names_of_points(), "without points")
     else:
         source = as_inputs(points, "points")
         check_array(source, options)
     run = make_run(options)
-    how = mesh_options({}, mesh_format)
+    how = mesh_options({"max_expansion": options.get("max_expansion")}, mesh_format)
     which = point_options(options, 2)
     return CheckReport(**_spillway.check(run, path, how, bool(any_delaunay), source, which))
 

@@ -192,7 +192,7 @@ def _ground(
     if ground is None and not isinstance(source, list):
         raise InvalidArgumentError("ground_class chooses points of files; of an array give ground")
     of_points = {"ground_class": ground_class}
-    joined = {name: options.get(name) for name in ("crs", "force_crs")}
+    joined = {name: options.get(name) for name in ("crs", "force_crs", "max_expansion")}
     if ground is not None and is_mesh(run, points, mesh_format, {}):
         of_points.update(options)
         kept = ("crs", "force_crs", *names_for("points"), *names_for("run"))

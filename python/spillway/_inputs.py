@@ -14,6 +14,7 @@ from ._options import (
     as_word,
     mesh_options,
     names_for,
+    names_of_points,
     point_options,
     refuse,
     triangulate_options,
@@ -84,7 +85,7 @@ def is_mesh(
 def check_mesh_options(options: Mapping[str, Any], *, keeps: tuple[str, ...] = ()) -> None:
     """Refuse options of points where a mesh is read, but those that it keeps."""
     allowed = {"crs", "force_crs", "max_edge", *keeps}
-    names = [n for n in [*names_for("points"), *names_for("division"), "id"] if n not in allowed]
+    names = [n for n in [*names_of_points(), *names_for("division"), "id"] if n not in allowed]
     refuse(options, names, "on a mesh")
 
 

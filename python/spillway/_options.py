@@ -311,8 +311,8 @@ _OPTIONS = {
     ),
     "max_expansion": _Option(
         "int, optional",
-        "Of compressed text, most bytes for each byte of the file; a file that expands to more is an "
-        "error. By default 2000.",
+        "Of compressed text and blocks of VTU, most bytes for each compressed one; a file that expands "
+        "to more is an error. By default 2000.",
         "points",
         attribute("max_expansion"),
     ),
@@ -651,6 +651,11 @@ def names_for(target: str) -> list[str]:
     return [name for name, option in _OPTIONS.items() if option.target == target]
 
 
+def names_of_points() -> list[str]:
+    """The names of the options of points that meshes do not have."""
+    return [name for name in names_for("points") if name != "max_expansion"]
+
+
 def _fill(target: Any, kind: str, options: Mapping[str, Any]) -> None:
     for name, option in _OPTIONS.items():
         if option.target == kind and option.put and is_given(options, name):
@@ -681,6 +686,7 @@ def mesh_options(options: Mapping[str, Any], mesh_format: str | None) -> _spillw
     made.format = as_word(mesh_format, "mesh_format")
     made.crs = as_crs(options.get("crs"))
     made.foreign_crs = bool(options.get("force_crs"))
+    put_all(made, {"max_expansion": options.get("max_expansion")})
     return made
 
 

@@ -112,6 +112,7 @@ class MeshOptions:
     format: str
     crs: str
     foreign_crs: bool
+    max_expansion: int
 
 class PointFileOptions:
     output_format: str

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "src/error.h"
 #include "src/geometry/simplex_name.h"
 
@@ -14,6 +16,12 @@ void check_choice(Choice value, Choice last, const char* what) {
   const int number = static_cast<int>(value);
   if (number >= 0 && number <= static_cast<int>(last)) return;
   throw InvalidArgument(fmt::format("there is no {} of number {}", what, number));
+}
+
+/// PointOptions::max_expansion and that of MeshOptions. Throws Failure (kInvalidArgument) for 0.
+inline std::uint64_t checked_expansion(std::uint64_t most) {
+  if (most > 0) return most;
+  throw InvalidArgument("nothing expands to 0 bytes for each compressed one; give 1 or more");
 }
 
 /// Throws Failure (kInvalidArgument) for simplices of more than three dimensions, of which what

@@ -73,6 +73,7 @@ Report convert(MeshSource& source, MeshSink& sink, const Context& context) {
     if (target->tells_hash()) file->check_totals(watch);
     if (target->wants_extent()) extent = file->find_extent(watch);
     MeshStreamReader& reader = file->reader(watch, !target->is_product());
+    if (!target->is_product()) file->tell_of_dropped_lattice();
     const std::string crs = crs_of_mesh(file->path(), reader.header().crs, file->crs_choice(),
                                         target->crs_need(), context);
     return stream::convert(reader, file->path(), extent, crs, *target, context, watch);

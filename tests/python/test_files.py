@@ -5,6 +5,7 @@ import errno
 import functools
 import inspect
 import json
+import lzma
 import os
 import pathlib
 import pickle
@@ -19,6 +20,25 @@ import warnings
 import numpy as np
 import spillway
 from support import InFolder, bytes_of, command, degenerate_sets, hash_by_command, random_points
+
+# A block each, after numbers of 64 bits: blocks, their bytes, those of the last, compressed ones.
+HOLLOW_VTU = """<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" header_type="UInt64"
+ compressor="vtkLZMADataCompressor"><UnstructuredGrid><Piece NumberOfPoints="{}" NumberOfCells="1">
+<Points><DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>
+</Points><Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">3</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">5</DataArray>
+</Cells></Piece></UnstructuredGrid><AppendedData encoding="raw">_"""
+
+
+def write_hollow_vtu(path, count):
+    """A triangle whose vertices, and all others, are the origin."""
+    block = lzma.compress(bytes(24 * count))
+    with open(path, "wb") as file:
+        file.write(HOLLOW_VTU.format(count).encode())
+        file.write(np.array([1, 24 * count, 0, len(block)], "<u8").tobytes() + block)
+        file.write(b"</AppendedData></VTKFile>")
 
 
 class Triangulate(InFolder):
@@ -235,6 +255,17 @@ class Convert(InFolder):
         ]:
             with self.subTest(options=options), self.assertRaisesRegex(ValueError, "no effect"):
                 spillway.convert(inputs, "out.spp", **options)
+
+    def test_blocks_of_vtu_that_expand_far_are_read_if_that_is_meant(self):
+        count = 3_000_000  # 72 MB of zeros, and one triangle
+        write_hollow_vtu("hollow.vtu", count)
+        with self.assertRaisesRegex(spillway.BadInputError, "that is meant, raise max_expansion"):
+            spillway.info("hollow.vtu")
+        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+            spillway.check("hollow.vtu", max_expansion=1000)
+        self.assertEqual(spillway.info("hollow.vtu", max_expansion=20000).vertices, count)
+        told = command("info", "hollow.vtu", "--json", "--max-expansion", 20000)
+        self.assertIn("3000000", told)
 
 
 class Generate(InFolder):

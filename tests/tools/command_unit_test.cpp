@@ -57,6 +57,7 @@ TEST(OptionNames, AreThoseThatThereAre) {
   InputOptions input_options;
   add_input_options(input, input_options);
   std::vector<std::string> known(kInputOptionNames.begin(), kInputOptionNames.end());
+  known.emplace_back("--max-expansion");  // of meshes, too
   EXPECT_THAT(long_names(input), ::testing::UnorderedElementsAreArray(known));
   CommandLine all;
   TriangulationOptions options;

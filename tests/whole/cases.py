@@ -1,6 +1,10 @@
 """Random cases: files of points, filters, options, ways in and out."""
+import functools
+import subprocess
+
 import numpy as np
 
+import cut_meshes
 import families
 import filters
 import point_files
@@ -153,12 +157,18 @@ def random_options(rng, case):
     maybe(0.1, "--kernel", rng.choice(["spillway", "cgal"]) if case.dim < 4 else "spillway")
     maybe(0.5 if n < 500_000 else 1, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
     maybe(0.2, "--no-trust-headers")
-    if not (case.pipe_in or case.pipe_out):
+    if case.ranks and not case.pipe_out and case.form in cut_meshes.IN_PARTS:
+        maybe(0.4, "--parts")
+    elif not (case.ranks or case.pipe_out) and case.dim < 4:
+        side = cut_meshes.random_side(rng, case)
+        maybe(0.15 if side else 0, "--tiles", side)
+    is_tiled = any(option[0] == "--tiles" for option in chosen)
+    if not (case.pipe_in or case.pipe_out or is_tiled):
         maybe(0.1, "--resume", "state", "--checkpoint-every", "0.001")
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
         maybe(0.2, "--id")
     extent = max((np.ptp(one.world()[:, :case.dim]) for one in case.inputs), default=0)
-    if 1e-100 < extent < 1e100:
+    if 1e-100 < extent < 1e100 and not is_tiled:  # tiles have no vertices without a simplex
         maybe(0.1, "--max-edge", repr(float(extent * 3 * rng.random() / n ** (1 / case.dim) + 1e-200)))
     if case.dim == 2 and all(one.world().shape[1] > 2 for one in case.inputs):
         maybe(0.3, "--heights", rng.choice(["first", "lowest", "highest", "mean"]))
@@ -178,6 +188,12 @@ def random_set(rng, command, folder, dim, most):
 SURVEY_FORMS = ("las", "las", "las", "laz", "copc")
 
 
+@functools.cache
+def reads_polygons(command):
+    told = subprocess.run([command, "--version"], capture_output=True, text=True, check=True).stdout
+    return "without GDAL" not in told
+
+
 def random_case(seed, command, folder, kind="runs", most=20000):
     rng = np.random.default_rng(seed)
     dim = int(rng.choice([2, 2, 2, 2, 3, 3, 3, 4]))
@@ -193,7 +209,8 @@ def random_case(seed, command, folder, kind="runs", most=20000):
     offsets = {tuple(one.offset) for one in case.inputs if one.offset is not None}
     if world is not None:
         case.filters = filters.random_filters(rng, world, dim, len(offsets) < 2,
-                                              all(one.scale is not None for one in case.inputs))
+                                              all(one.scale is not None for one in case.inputs),
+                                              reads_polygons(command))
     case.form = str(rng.choice({2: FORMATS, 3: IN_SPACE}.get(dim, OF_MORE)))
     lies = any(one.lies and one.form in ("las", "laz") for one in case.inputs)
     if len(case.inputs) == 1 and case.inputs[0].form not in point_files.NOT_PIPED and not lies:

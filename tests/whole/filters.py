@@ -1,4 +1,7 @@
 """Filters of points: options of the command, and what they keep by the driver's own reckoning."""
+import json
+from fractions import Fraction
+
 import numpy as np
 
 from point_files import attributes_of
@@ -8,9 +11,10 @@ class Filter:
     """`arguments` of the command; `keep(world, numbers, counts)` gives those of the numbered points
     that are kept, in the order in which they come, of inputs with `counts` records each."""
 
-    def __init__(self, arguments, keep):
+    def __init__(self, arguments, keep, files=None):
         self.arguments = arguments
         self.keep = keep
+        self.files = files or {}  # texts by names, which the command reads
 
 
 def every(rng, world, exact):
@@ -98,6 +102,49 @@ def returns(rng, world, exact):
     return Filter(["--returns", which], keep)
 
 
+def is_left(a, b, points):
+    """Whether the points lie to the left of the line from a to b, which goes up, and not on it."""
+    edge, way = np.subtract(b, a), points - a
+    products = edge[0] * way[:, 1], edge[1] * way[:, 0]
+    value = products[0] - products[1]
+    left = value > 0
+    for number in np.flatnonzero(np.abs(value) <= 1e-9 * (np.abs(products[0]) + np.abs(products[1]))):
+        ax, ay, bx, by, x, y = map(Fraction, map(float, (*a, *b, *points[number])))
+        left[number] = (bx - ax) * (y - ay) > (by - ay) * (x - ax)
+    return left
+
+
+def is_within(ring, points):
+    """Of a point on an edge: whether what is east of that is within, or north of a level one."""
+    within = np.zeros(len(points), bool)
+    for a, b in zip(ring, np.roll(ring, -1, axis=0)):
+        low, high = (a, b) if a[1] < b[1] else (b, a)
+        beside = (low[1] <= points[:, 1]) & (points[:, 1] < high[1])
+        within[beside] ^= ~is_left(low, high, points[beside])
+    return within
+
+
+def clip(rng, world, exact):
+    """A polygon of three to five corners, some of which are points, that may cross itself."""
+    sides = [two_values(rng, world[:, axis], exact) for axis in (0, 1)]
+    count = int(rng.integers(3, 6))
+    if rng.random() < 0.3:
+        ring = np.array([[sides[0][i in (1, 2)], sides[1][i > 1]] for i in range(4)])
+    elif exact:
+        ring = world[rng.integers(0, len(world), count), :2]
+    else:
+        ring = np.array([[rng.choice(side) for side in sides] for _ in range(count)])
+    outside = bool(rng.random() < 0.3)
+
+    def keep(points, numbers, counts):
+        return numbers[is_within(ring, points[numbers, :2]) != outside]
+
+    rows = [[float(v) for v in corner] for corner in [*ring, ring[0]]]
+    text = json.dumps({"type": "Polygon", "coordinates": [rows]})
+    return Filter(["--clip", "clip.geojson", "--force-crs"] + ["--clip-outside"] * outside, keep,
+                  {"clip.geojson": text})
+
+
 def thin(rng, world, exact):
     """Cells whose sides are powers of two, so that their numbers are exact."""
     span = max(float(np.max(np.abs(world[:, :2]))), 1e-300)
@@ -121,9 +168,9 @@ def thin(rng, world, exact):
     return Filter(["--thin", f"{side!r}:{which}"], keep)
 
 
-def random_filters(rng, world, dim, exact, attributes):
+def random_filters(rng, world, dim, exact, attributes, polygons):
     """In the order in which the command applies them. `exact`: bounds may be those of points;
-    `attributes`: points have classes and returns."""
+    `attributes`: points have classes and returns; `polygons`: the command can read them."""
     if len(world) < 2 or rng.random() < 0.7:
         return []
     known = [every, where, bounds]
@@ -131,6 +178,8 @@ def random_filters(rng, world, dim, exact, attributes):
         known += [classes, returns]
     if world.shape[1] > 2:
         known.append(z_range)
+    if polygons and np.max(np.abs(world)) < 1e15:
+        known.append(clip)
     if dim == 2 and np.all(np.isfinite(world)) and np.max(np.abs(world)) < 1e12:
         known.append(thin)
     chosen = [make(rng, world, exact) for make in known if rng.random() < 1.3 / len(known)]

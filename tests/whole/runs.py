@@ -6,6 +6,7 @@ import shutil
 import subprocess
 
 import comparison
+import cut_meshes
 import mesh_files
 from expected import Expected
 from oracle import Failed
@@ -32,11 +33,16 @@ def fresh_folder(folder):
     os.chdir(folder)
 
 
+def output_of(case):
+    tile = "_{x}_{y}" if case.option("--tiles") else ""
+    return f"out/mesh{tile}.{mesh_files.end_of(case.form)}"
+
+
 def command_of(case, binary):
     """The arguments of the run, in its folder."""
     names = ["-"] if case.pipe_in else [one.name(i) for i, one in enumerate(case.inputs)]
     arguments = [*(MPIRUN + ["-n", str(case.ranks)] if case.ranks else []), binary, "triangulate",
-                 *names, "-o", "-" if case.pipe_out else f"out/mesh.{mesh_files.end_of(case.form)}",
+                 *names, "-o", "-" if case.pipe_out else output_of(case),
                  "--output-format", case.form, "--dim", str(case.dim), "--scratch-folder", "scratch",
                  "--progress", "none"]
     if not case.pipe_out:
@@ -55,7 +61,7 @@ def shown(case, binary):
     line = shlex.join(command_of(case, binary))
     if case.pipe_in:
         line = f"cat {case.inputs[0].name(0)} | {line}"
-    return line + (f" > out/mesh.{mesh_files.end_of(case.form)}" if case.pipe_out else "")
+    return line + (f" > {output_of(case)}" if case.pipe_out else "")
 
 
 def call(arguments, case):
@@ -137,6 +143,9 @@ def run_case(case, binary, cgal, folder):
     case.inputs = [one.take(slice(None)) for one in case.inputs]
     for number, one in enumerate(case.inputs):
         one.write(binary, number)
+    for name, text in [item for one in case.filters for item in one.files.items()]:
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
     expected = Expected(case, cgal)
     if expected.unclear:
         return Outcome("unclear")
@@ -151,14 +160,19 @@ def run_case(case, binary, cgal, folder):
         told = ["more memory"]
     if done.returncode != 0:
         return check_error(case, expected, done)
-    path = f"out/mesh.{mesh_files.end_of(case.form)}"
+    path = output_of(case)
     if case.pipe_out:
         with open(path, "wb") as file:
             file.write(done.stdout)
     if not len(expected.simplices):
         raise Failed("a mesh of points without simplices")
-    mesh = mesh_files.read_mesh(binary, path, case.form, case.dim)
+    is_cut = case.option("--tiles") or case.option("--parts")
+    mesh = (cut_meshes.read(binary, case) if is_cut else
+            mesh_files.read_mesh(binary, path, case.form, case.dim))
     comparison.check_mesh(case, expected, mesh)
     told += [] if case.pipe_out else comparison.check_stats(case, expected)
-    comparison.check_proof(case, binary, path)
+    if is_cut:
+        told.append("in several files")
+    else:
+        comparison.check_proof(case, binary, path)
     return Outcome("the same", *told)

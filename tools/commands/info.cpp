@@ -295,7 +295,7 @@ InputKind kind_of(const std::string& path, const InfoOptions& options, const Con
 Json describe_input(const std::string& path, const InfoOptions& options, const Context& context,
                     Total& total) {
   if (kind_of(path, options, context) == InputKind::kMesh) {
-    return mesh_json(path, describe_mesh(path, {}, context));
+    return mesh_json(path, describe_mesh(path, {.max_expansion = options.input.max_expansion}, context));
   }
   const PointOptions how = point_options(options.input, 2);
   const PointsInfo info =
@@ -433,8 +433,7 @@ int run(const InfoOptions& options) {
     std::vector<std::string_view> filters(kInputOptionNames.begin(), kInputOptionNames.end());
     std::erase_if(filters, [](std::string_view name) {
       return name == "--input-format" || name == "--columns" || name == "--skip-lines" ||
-             name == "--separator" || name == "--decimal" || name == "--no-header" ||
-             name == "--max-expansion";
+             name == "--separator" || name == "--decimal" || name == "--no-header";
     });
     refuse_given(*options.app, filters, "with --fast, which reads no points");
   }

@@ -92,7 +92,8 @@ void add_input_options(CommandLine& app, InputOptions& options) {
       .group(group);
   take_whole_number(
       app.add_option("--max-expansion", options.max_expansion,
-                     "Of compressed text, most bytes for each byte of the file; more is an error"),
+                     "Of compressed text and blocks of VTU, most bytes for each compressed one; more "
+                    "is an error"),
       1)
       .value_name("N")
       .group(kTableGroup);
@@ -183,6 +184,7 @@ MeshOptions mesh_options(const InputOptions& options, const std::string& format)
   mesh.format = format;
   if (!options.crs.empty()) mesh.crs = parse_crs(options.crs);
   mesh.foreign_crs = options.force_crs;
+  mesh.max_expansion = options.max_expansion;
   return mesh;
 }
 

@@ -47,14 +47,15 @@ struct InputOptions {
   [[nodiscard]] bool filters() const;
 };
 
-/// The names of the options that add_input_options() adds.
-inline constexpr std::array<std::string_view, 27> kInputOptionNames = {
+/// The names of the options that add_input_options() adds, but --max-expansion, which meshes have,
+/// too.
+inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
     "--skip-lines",   "--separator",    "--decimal",       "--no-header", "--input-format",
     "--columns",      "--crs",          "--force-crs",     "--to-crs",    "--multiply-z",
     "--skip-invalid", "--skip-broken",  "--keep-withheld", "--every",     "--keep-class",
     "--drop-class",   "--returns",      "--where",         "--bounds",    "--z-range",
     "--clip",         "--clip-buffer",  "--clip-outside",  "--thin",      "--resolution",
-    "--salvage",      "--max-expansion"};
+    "--salvage"};
 
 /// --input-format, --columns, --crs, --force-crs, and the filters.
 void add_input_options(CommandLine& app, InputOptions& options);
@@ -70,7 +71,8 @@ Clip product_clip(const InputOptions& options);
 /// Checks the value of --where. Throws UsageError for what is no condition.
 void parse_condition(const std::string& text);
 
-/// Options of a mesh of this format, which has the same ones about coordinate systems.
+/// Options of a mesh of this format, which has the same ones about coordinate systems and what is
+/// compressed.
 MeshOptions mesh_options(const InputOptions& options, const std::string& format);
 
 /// Reads the value of --crs: a code or WKT as it is, or what stands in the file that it names. This

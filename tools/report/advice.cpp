@@ -78,6 +78,8 @@ std::string advice(const ErrorFacts& facts) {
       return ", or add --force";
     case Remedy::kAttributes:
       return ", or leave attributes out with --attributes";
+    case Remedy::kExpansion:
+      return "; if that is meant, raise --max-expansion";
     case Remedy::kSalvage:
       return ", or take what is whole of it with --salvage";
     case Remedy::kPointLattice:

@@ -115,9 +115,9 @@ class Base64Bytes final : public VtuBytes {
 
 }  // namespace
 
-void fail_in_vtu(const BufferedInput& input, const std::string& what) {
+void fail_in_vtu(const BufferedInput& input, const std::string& what, Remedy remedy) {
   throw BadInput(input.name(), fmt::format("before byte {}: {}", input.position(), what),
-                 at_byte(input.position()));
+                 at_byte(input.position()), remedy);
 }
 
 void fail_at_end_of_vtu(const BufferedInput& input) {

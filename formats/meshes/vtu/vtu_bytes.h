@@ -13,7 +13,8 @@
 namespace spillway::formats {
 
 /// Throws Failure about what has just been read.
-[[noreturn]] void fail_in_vtu(const BufferedInput& input, const std::string& what);
+[[noreturn]] void fail_in_vtu(const BufferedInput& input, const std::string& what,
+                              Remedy remedy = Remedy::kNone);
 
 /// Throws Failure that says that the file ends too early.
 [[noreturn]] void fail_at_end_of_vtu(const BufferedInput& input);

@@ -27,10 +27,10 @@ constinit const MeshFormat kVtuMesh = {
         [](std::string_view text) {
           return text.starts_with('<') && text.find("<VTKFile") != text.npos;
         },
-    .read =
-        [](InputBytes& source) {
+    .read_compressed =
+        [](InputBytes& source, std::uint64_t max_expansion) {
           check_is_no_pvtu(source);
-          return read_vtu(source);
+          return read_vtu(source, max_expansion);
         },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {

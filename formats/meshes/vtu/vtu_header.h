@@ -13,11 +13,13 @@
 
 namespace spillway::formats {
 
-/// How the binary arrays of a file are written: what its first tag says.
+/// How the binary arrays of a file are written: what its first tag says, and how far its blocks may
+/// expand.
 struct VtuCoding {
   bool swaps = false;                             ///< bytes are in the other order
   NumberType length_type = NumberType::kUint32;   ///< of the numbers that precede an array
   std::optional<BlockCompression> compression{};  ///< of the blocks of an array
+  std::uint64_t max_expansion = 1;                ///< of which none expands_too_far()
 };
 
 /// Where the values of an array are.

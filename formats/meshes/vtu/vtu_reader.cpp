@@ -46,7 +46,8 @@ struct ReadAttribute {
 
 class VtuReader {
  public:
-  explicit VtuReader(InputBytes& source) : input_(source), tags_(input_) {
+  VtuReader(InputBytes& source, std::uint64_t max_expansion)
+      : input_(source), tags_(input_), max_expansion_(max_expansion) {
     mesh_.header.dimension = 0;
   }
 
@@ -76,6 +77,7 @@ class VtuReader {
     const std::string_view name = tags_.tag().name;
     if (name == "VTKFile") {
       coding_ = vtu_coding(tags_);
+      coding_->max_expansion = max_expansion_;
     } else if (name == "Piece") {
       read_piece();
     } else if (name == "DataArray") {
@@ -416,6 +418,8 @@ class VtuReader {
 
 }  // namespace
 
-Mesh read_vtu(InputBytes& source) { return VtuReader(source).read(); }
+Mesh read_vtu(InputBytes& source, std::uint64_t max_expansion) {
+  return VtuReader(source, max_expansion).read();
+}
 
 }  // namespace spillway::formats

@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::size_t kBuffer = std::size_t{1} << 16;  // a multiple of every number's size
 constexpr std::size_t kStep = std::size_t{1} << 20;
-/// Of a block. Those of xz could fill the memory; other programs write blocks of some megabytes.
-constexpr std::uint64_t kMostExpansion = 2000;
 constexpr std::size_t kLongestWord = 400;
 constexpr std::string_view kWordEnd = " \t\r\n<";
 
@@ -68,7 +66,7 @@ class PlainContent final : public VtuContent {
 class BlockContent final : public VtuContent {
  public:
   BlockContent(VtuBytes& bytes, const VtuCoding& coding)
-      : bytes_(bytes), compression_(*coding.compression) {
+      : bytes_(bytes), compression_(*coding.compression), max_expansion_(coding.max_expansion) {
     const std::uint64_t blocks = read_length(bytes, coding);
     size_of_block_ = read_length(bytes, coding);
     size_of_last_ = read_length(bytes, coding);
@@ -100,12 +98,12 @@ class BlockContent final : public VtuContent {
     const bool is_last = block_ + 1 == compressed_sizes_.size();
     const std::uint64_t wanted = is_last ? size_of_last_ : size_of_block_;
     check_room(bytes_, size, "a block");
-    if (expands_too_far(size, wanted, kMostExpansion)) {
-      fail_in_vtu(
-          bytes_.input(),
-          fmt::format("block {} of an array is said to hold {} bytes in {}, more than {} times "
-                      "as many; the file is corrupt, or its blocks are too large",
-                      block_, wanted, size, kMostExpansion));
+    if (expands_too_far(size, wanted, max_expansion_)) {
+      fail_in_vtu(bytes_.input(),
+                  fmt::format("block {} of an array is said to hold {} bytes in {}, more than {} "
+                              "times as many",
+                              block_, wanted, size, max_expansion_),
+                  Remedy::kExpansion);
     }
     compressed_.clear();
     while (compressed_.size() < size) {

@@ -30,6 +30,7 @@ CheckReport count_stream(MeshStreamReader& reader, const CheckerOptions& options
 OpenedMesh::OpenedMesh(std::string path, const MeshOptions& options, const Context& context)
     : path_(std::move(path)),
       format_name_(options.format),
+      max_expansion_(checked_expansion(options.max_expansion)),
       crs_choice_{checked_crs(options.crs), options.foreign_crs},
       context_(context),
       input_(context_.state().input(path_)) {
@@ -64,25 +65,37 @@ MeshStreamReader& OpenedMesh::reader(RunWatch& watch, bool all_totals) {
     return *reader_;
   }
   if (mesh_) {
-    reader_ = std::make_unique<WholeMesh>(*std::exchange(mesh_, std::nullopt), path_, all_totals);
+    pass_on(*std::exchange(mesh_, std::nullopt), all_totals);
     return *reader_;
   }
   watch.begin("read mesh", "simplices");
   Mesh mesh = stream_ ? collect_mesh(*stream_) : read_whole();
   stream_.reset();
-  reader_ = std::make_unique<WholeMesh>(std::move(mesh), path_, all_totals);
+  pass_on(std::move(mesh), all_totals);
   watch.end(reader_->totals().simplices);
   return *reader_;
 }
 
+void OpenedMesh::pass_on(Mesh mesh, bool all_totals) {
+  const bool had_lattice = mesh.header.lattice.has_value();
+  reader_ = std::make_unique<WholeMesh>(std::move(mesh), path_, all_totals);
+  drops_lattice_ = had_lattice && !reader_->header().lattice;
+}
+
 Mesh OpenedMesh::read_whole() const {
-  Mesh mesh = read_mesh(*input_, path_, format_name_);
-  if (!context_.options().warning) return mesh;
-  for (const std::string& notice : mesh.notices) {
-    context_.options().warning(
-        fmt::format("{}: {}", path_ == "-" ? "standard input" : path_, notice));
-  }
+  Mesh mesh = read_mesh(*input_, path_, format_name_, mesh_formats(), max_expansion_);
+  for (const std::string& notice : mesh.notices) warn(notice);
   return mesh;
+}
+
+void OpenedMesh::warn(const std::string& notice) const {
+  if (!context_.options().warning) return;
+  context_.options().warning(
+      fmt::format("{}: {}", path_ == "-" ? "standard input" : path_, notice));
+}
+
+void OpenedMesh::tell_of_dropped_lattice() const {
+  if (drops_lattice_) warn("a vertex is not on the lattice that the file tells of, which is left out");
 }
 
 MeshStreamReader& OpenedMesh::stream() const {

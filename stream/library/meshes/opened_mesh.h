@@ -49,6 +49,8 @@ class OpenedMesh final : public spillway::MeshSource {
   MeshStreamReader& reader(RunWatch& watch, bool all_totals);
   /// A stream block by block, whatever totals it tells. Throws Failure.
   MeshStreamReader& stream() const;
+  /// Warns if what reader() opened has no lattice because a vertex is not on that of the file.
+  void tell_of_dropped_lattice() const;
   /// The whole mesh of another format, which is read first, as phase "read mesh".
   const Mesh& whole(RunWatch& watch) const;
   /// Reads the whole mesh, whatever its format, and tells no phase.
@@ -66,12 +68,16 @@ class OpenedMesh final : public spillway::MeshSource {
  private:
   OpenedMesh* opened_mesh() override { return this; }
   [[nodiscard]] std::unique_ptr<MeshStreamReader> open_stream() const;
+  void warn(const std::string& notice) const;
   /// Of a pipe.
   void keep_copy(RunWatch& watch);
+  /// Makes a whole mesh what reader() opens.
+  void pass_on(Mesh mesh, bool all_totals);
   MeshStreamReader& public_reader();
 
   std::string path_;
   std::string format_name_;
+  std::uint64_t max_expansion_;
   CrsChoice crs_choice_;
   const Context context_;
   const std::shared_ptr<ProbedInput> input_;
@@ -83,6 +89,7 @@ class OpenedMesh final : public spillway::MeshSource {
   mutable std::unique_ptr<MeshStreamReader> stream_;  ///< opened, and not yet read
   mutable std::optional<Mesh> mesh_;                  ///< read, and not yet passed on
   std::unique_ptr<MeshStreamReader> reader_;
+  bool drops_lattice_ = false;
   bool is_taken_ = false;
   bool is_reading_ = false;  ///< by read()
   std::uint64_t read_ = 0;   ///< vertices that read() has given

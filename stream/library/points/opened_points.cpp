@@ -253,10 +253,7 @@ JoinedInputsOptions OpenedPoints::source_options(const PointOptions& options,
   how.reader.format = options.format;
   how.reader.text = text_layout_of(options.text);
   how.reader.skip_invalid = options.skip_invalid;
-  if (options.max_expansion == 0) {
-    throw InvalidArgument("text cannot expand to 0 bytes for each of its own; give 1 or more");
-  }
-  how.reader.max_expansion = options.max_expansion;
+  how.reader.max_expansion = checked_expansion(options.max_expansion);
   how.reader.salvage = options.salvage;
   how.skip_broken = options.skip_broken;
   how.reader.keep_withheld = options.keep_withheld;

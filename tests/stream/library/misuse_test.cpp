@@ -169,6 +169,11 @@ TEST_F(Misuse, OfOptionsThatLeaveNoPointsIsRefused) {
   EXPECT_THROW(open_points({file("p.txt")}, {.max_expansion = 0}, context_), Error);
 }
 
+TEST_F(Misuse, OfALimitThatNoMeshIsWithinIsRefused) {
+  make_mesh("mesh.spm");
+  EXPECT_THROW(open_mesh(file("mesh.spm"), {.max_expansion = 0}, context_), Error);
+}
+
 TEST_F(Misuse, SourcesOutliveTheContextTheyWereOpenedWith) {
   make_mesh("mesh.spm");
   std::unique_ptr<PointSource> points;

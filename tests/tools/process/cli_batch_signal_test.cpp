@@ -25,6 +25,13 @@ void sleep_for(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
 
+std::vector<pid_t> children_of(pid_t process) {
+  std::ifstream file(fmt::format("/proc/{0}/task/{0}/children", process));
+  std::vector<pid_t> children;
+  for (pid_t child = 0; file >> child;) children.push_back(child);
+  return children;
+}
+
 /// A workspace with four files that take a while, and a folder for temporary ones.
 class InterruptedBatch : public ::testing::TestWithParam<int> {
  protected:
@@ -104,12 +111,13 @@ TEST_F(SignalledBatch, WhoseWholeGroupIsSignalledSaysSoOnce) {
 
 TEST_F(SignalledBatch, EndsJobsThatAreHeld) {
   const pid_t process = space.start(arguments());
-  for (int i = 0; i < 2000 && !has_begun(); ++i) sleep_for(5);
-  sleep_for(200);
-  std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", process));
-  int held = 0;
-  for (pid_t child = 0; children >> child; ++held) kill(child, SIGSTOP);
-  EXPECT_GT(held, 0);
+  std::vector<pid_t> children;
+  for (int i = 0; i < 2000 && children.empty(); ++i) {
+    sleep_for(5);
+    children = children_of(process);
+  }
+  EXPECT_FALSE(children.empty());
+  for (const pid_t child : children) kill(child, SIGSTOP);
   kill(process, SIGTERM);
   EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);
   EXPECT_THAT(names_in("tmp"), IsEmpty());

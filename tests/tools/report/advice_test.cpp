@@ -47,7 +47,7 @@ TEST(Advice, IsAnotherForEachRemedy) {
         Remedy::kRasterExtent, Remedy::kPointLattice, Remedy::kDistrustHeaders,
         Remedy::kUnknownCrs,   Remedy::kGivenCrs,     Remedy::kWrongCrs,
         Remedy::kGroundScale,  Remedy::kColumns,      Remedy::kSalvage,
-        Remedy::kForce,        Remedy::kAttributes}) {
+        Remedy::kForce,        Remedy::kAttributes,   Remedy::kExpansion}) {
     EXPECT_TRUE(texts.insert(advice({.remedy = remedy})).second);
   }
 }

@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/disk/file_system.h"
@@ -177,6 +180,36 @@ TEST_F(OpenedMeshTest, AProgramReadsTheSameBlocksFromAFileAndFromAPipe) {
   EXPECT_EQ(vertices, mesh_.totals.vertices);
   EXPECT_EQ(from_pipe.totals(), mesh_.totals);
   EXPECT_EQ(from_file.totals(), mesh_.totals);
+}
+
+/// Moves the first vertex of a binary PLY by the least that there is, away from 0.
+void move_first_vertex(const std::string& path) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  for (std::string line; line != "end_header" && std::getline(file, line);) {
+  }
+  const auto first = file.tellg();
+  double x = 0;
+  file.read(reinterpret_cast<char*>(&x), sizeof x);
+  x = std::nextafter(x, x < 0 ? -HUGE_VAL : HUGE_VAL);
+  file.seekp(first);
+  file.write(reinterpret_cast<const char*>(&x), sizeof x);
+}
+
+TEST_F(OpenedMeshTest, TellsOfALatticeThatAVertexIsNotOn) {
+  std::vector<std::string> notices;
+  ContextOptions telling = options(phases_);
+  telling.warning = [&](std::string_view text) { notices.emplace_back(text); };
+  const Context context(telling);
+  const std::string path = write("a.ply");
+  OpenedMesh good(path, {}, context);
+  EXPECT_TRUE(good.reader(watch_, true).header().lattice);
+  good.tell_of_dropped_lattice();
+  EXPECT_THAT(notices, IsEmpty());
+  move_first_vertex(path);
+  OpenedMesh moved(path, {}, context);
+  EXPECT_FALSE(moved.reader(watch_, true).header().lattice);
+  moved.tell_of_dropped_lattice();
+  EXPECT_THAT(notices, ElementsAre(HasSubstr("a.ply: a vertex is not on the lattice")));
 }
 
 TEST_F(OpenedMeshTest, IsTakenOnceByARunOrByTheProgram) {
