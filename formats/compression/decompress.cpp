@@ -155,10 +155,11 @@ class LimitedExpansion : public InputFile {
     const std::size_t got = content_->read(buffer);
     given_ += got;
     if (expands_too_far(source_.position(), given_, max_expansion_)) {
-      throw BadInput(source_.name(),
-                     fmt::format("the {} data expands to more than {} times its size, before byte {}",
-                                 name_of(compression_), max_expansion_, source_.position()),
-                     at_byte(source_.position()), Remedy::kExpansion);
+      throw BadInput(
+          source_.name(),
+          fmt::format("the {} data expands to more than {} times its size, before byte {}",
+                      name_of(compression_), max_expansion_, source_.position()),
+          at_byte(source_.position()), Remedy::kExpansion);
     }
     return got;
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "formats/bytes/input_bytes.h"
+#include "formats/compression/expansion.h"
 #include "formats/disk/file_system.h"
 #include "formats/meshes/mesh_formats.h"
 
@@ -23,8 +25,7 @@ bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats = m
 /// count, and that no compressed block expands_too_far() by
 /// `max_expansion`. Coordinates are finite. Throws Failure that names the file and the byte or line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "",
-               MeshFormats formats = mesh_formats(),
-               std::uint64_t max_expansion = kMostExpansion);
+               MeshFormats formats = mesh_formats(), std::uint64_t max_expansion = kMostExpansion);
 
 /// The whole of a stream of which nothing has been read, in output coordinates.
 Mesh collect_mesh(MeshStreamReader& stream);

@@ -57,8 +57,8 @@ Outcome check_input(const CheckCommandOptions& options, ProgressLine& progress) 
   const MemoryOptions memory = options.points.empty() ? MemoryOptions{} : options.memory;
   const Context context(context_options(memory, options.threads, progress));
   const auto mesh = open_mesh(
-      options.mesh,
-      {.format = options.mesh_format, .max_expansion = options.input.max_expansion}, context);
+      options.mesh, {.format = options.mesh_format, .max_expansion = options.input.max_expansion},
+      context);
   const int dimension = mesh->header().dimension;
   std::unique_ptr<PointSource> points;
   if (!options.points.empty()) {

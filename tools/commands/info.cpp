@@ -295,7 +295,8 @@ InputKind kind_of(const std::string& path, const InfoOptions& options, const Con
 Json describe_input(const std::string& path, const InfoOptions& options, const Context& context,
                     Total& total) {
   if (kind_of(path, options, context) == InputKind::kMesh) {
-    return mesh_json(path, describe_mesh(path, {.max_expansion = options.input.max_expansion}, context));
+    return mesh_json(path,
+                     describe_mesh(path, {.max_expansion = options.input.max_expansion}, context));
   }
   const PointOptions how = point_options(options.input, 2);
   const PointsInfo info =

@@ -91,9 +91,10 @@ void add_input_options(CommandLine& app, InputOptions& options) {
                "Leave out rows of text, npy, PLY and PCD that are not points, and count them")
       .group(group);
   take_whole_number(
-      app.add_option("--max-expansion", options.max_expansion,
-                     "Of compressed text and blocks of VTU, most bytes for each compressed one; more "
-                    "is an error"),
+      app.add_option(
+          "--max-expansion", options.max_expansion,
+          "Of compressed text and blocks of VTU, most bytes for each compressed one; more "
+          "is an error"),
       1)
       .value_name("N")
       .group(kTableGroup);

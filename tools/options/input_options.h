@@ -50,11 +50,11 @@ struct InputOptions {
 /// The names of the options that add_input_options() adds, but --max-expansion, which meshes have,
 /// too.
 inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
-    "--skip-lines",   "--separator",    "--decimal",       "--no-header", "--input-format",
-    "--columns",      "--crs",          "--force-crs",     "--to-crs",    "--multiply-z",
-    "--skip-invalid", "--skip-broken",  "--keep-withheld", "--every",     "--keep-class",
-    "--drop-class",   "--returns",      "--where",         "--bounds",    "--z-range",
-    "--clip",         "--clip-buffer",  "--clip-outside",  "--thin",      "--resolution",
+    "--skip-lines",   "--separator",   "--decimal",       "--no-header", "--input-format",
+    "--columns",      "--crs",         "--force-crs",     "--to-crs",    "--multiply-z",
+    "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",     "--keep-class",
+    "--drop-class",   "--returns",     "--where",         "--bounds",    "--z-range",
+    "--clip",         "--clip-buffer", "--clip-outside",  "--thin",      "--resolution",
     "--salvage"};
 
 /// --input-format, --columns, --crs, --force-crs, and the filters.

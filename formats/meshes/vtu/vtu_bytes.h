@@ -9,6 +9,7 @@
 #include <string>
 
 #include "formats/bytes/buffered_input.h"
+#include "src/error.h"
 
 namespace spillway::formats {
 

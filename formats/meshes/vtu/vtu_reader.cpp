@@ -404,6 +404,7 @@ class VtuReader {
 
   BufferedInput input_;
   VtuTags tags_;
+  std::uint64_t max_expansion_;
   std::string section_;  // the element that the arrays are in
   std::optional<VtuCoding> coding_;
   std::optional<std::uint64_t> cell_count_;

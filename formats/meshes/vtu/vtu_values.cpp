@@ -123,6 +123,7 @@ class BlockContent final : public VtuContent {
 
   VtuBytes& bytes_;
   BlockCompression compression_;
+  std::uint64_t max_expansion_;
   std::uint64_t size_of_block_;
   std::uint64_t size_of_last_;
   std::vector<std::uint64_t> compressed_sizes_;

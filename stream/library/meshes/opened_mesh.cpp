@@ -10,6 +10,7 @@
 #include "formats/inputs/open_mesh_stream.h"
 #include "formats/meshes/mesh_formats.h"
 #include "src/error.h"
+#include "stream/library/choice_check.h"
 #include "stream/library/context/context_state.h"
 #include "stream/library/given_crs.h"
 #include "stream/library/meshes/public_values.h"
@@ -95,7 +96,8 @@ void OpenedMesh::warn(const std::string& notice) const {
 }
 
 void OpenedMesh::tell_of_dropped_lattice() const {
-  if (drops_lattice_) warn("a vertex is not on the lattice that the file tells of, which is left out");
+  if (drops_lattice_)
+    warn("a vertex is not on the lattice that the file tells of, which is left out");
 }
 
 MeshStreamReader& OpenedMesh::stream() const {

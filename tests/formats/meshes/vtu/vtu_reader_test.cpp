@@ -500,9 +500,8 @@ TEST(VtuReader, BlocksThatAreMadeToFillTheMemoryAreRefused) {
   const std::size_t size_of_last = good.find("   _") + 4 + points + 16;
   std::string bad = good;
   put(bad, size_of_last, std::uint64_t{1} << 30);
-  EXPECT_THAT(error_of_bytes("a.vtu", bad),
-              AllOf(HasSubstr("is said to hold 1073741824 bytes in"),
-                    HasSubstr("more than 2000 times as many")));
+  EXPECT_THAT(error_of_bytes("a.vtu", bad), AllOf(HasSubstr("is said to hold 1073741824 bytes in"),
+                                                  HasSubstr("more than 2000 times as many")));
   FaultyFileSystem files;
   files.files["a.vtu"] = bad;
   EXPECT_THAT(error_of([&] { read_mesh(files, "a.vtu", "", mesh_formats(), 1 << 30); }),
