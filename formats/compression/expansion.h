@@ -7,7 +7,9 @@
 
 namespace spillway::formats {
 
-/// What nothing that is meant comes near to, in bytes for each compressed one.
+/// The limit unless another one is given, in bytes for each compressed one. No table of points
+/// comes near to it, and other programs write blocks of meshes of some megabytes only; but data
+/// that is made for it, above all of xz, could fill the memory.
 inline constexpr std::uint64_t kMostExpansion = 2000;
 
 /// Whether `size` bytes are more than 64 MiB and `most` (at least 1) times the compressed ones.

@@ -81,8 +81,7 @@ Mesh read_as(const MeshFormat& format, std::unique_ptr<InputBytes> source, const
   refuse_pipe_of_tables(*source, path, format);
   if (format.is_table()) return format.read_table(path);
   if (format.is_stream()) return collect_mesh(*format.open_stream(std::move(source)));
-  if (format.read_compressed != nullptr) return format.read_compressed(*source, max_expansion);
-  return format.read(*source);
+  return format.read(*source, max_expansion);
 }
 
 Mesh read_any_mesh(FileSystem& files, const std::string& path, const std::string& format_name,

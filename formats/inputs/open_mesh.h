@@ -18,12 +18,12 @@ const MeshFormat* mesh_format_of_content(InputBytes& source, MeshFormats formats
 bool is_mesh(FileSystem& files, const std::string& path, MeshFormats formats = mesh_formats());
 
 /// Reads a whole mesh, in any of the formats, streams included. docs/formats-meshes.md tells what
-/// is read of each: of npy pairs (`X_vertices.npy` beside
-/// `X_simplices.npy`) by either name or as `X.npy`, of tables those on the machine's own disk.
-/// `format_name` is a format's name; if it is empty, the first bytes tell, then the path. Checked
-/// before anything is allocated: counts against the file's size, vertex numbers against the vertex
-/// count, and that no compressed block expands_too_far() by
-/// `max_expansion`. Coordinates are finite. Throws Failure that names the file and the byte or line.
+/// is read of each: of npy pairs (`X_vertices.npy` beside `X_simplices.npy`) by either name or as
+/// `X.npy`, of tables those on the machine's own disk. `format_name` is a format's name; if it is
+/// empty, the first bytes tell, then the path. Checked before anything is allocated: counts against
+/// the file's size, vertex numbers against the vertex count. Coordinates are finite. No compressed
+/// block expands_too_far() by `max_expansion`. Throws Failure that names the file and the byte or
+/// line.
 Mesh read_mesh(FileSystem& files, const std::string& path, const std::string& format_name = "",
                MeshFormats formats = mesh_formats(), std::uint64_t max_expansion = kMostExpansion);
 

@@ -107,8 +107,8 @@ struct MeshOptions {
   /// Nothing is transformed. With `foreign_crs` also of a mesh that names another one.
   std::string crs{};
   bool foreign_crs = false;
-  /// Blocks of VTU of more than 64 MiB, and so many times as long as what is compressed, are an
-  /// error: they are made to fill the memory. At least 1.
+  /// Of blocks of VTU: most bytes for each compressed one, so that a small file that fills the
+  /// memory is an error; 64 MiB are free. At least 1.
   std::uint64_t max_expansion = 2000;
 };
 

@@ -35,7 +35,7 @@ from ._options import (
     mesh_file_options,
     mesh_options,
     move_clip,
-    names_of_points,
+    names_for_points_alone,
     point_options,
     put,
     put_all,
@@ -417,7 +417,7 @@ def info(
     paths = [as_path(file, "file")]
     run = make_run(options)
     if is_mesh(run, paths, None, options):
-        refuse(options, names_of_points(), "on a mesh")
+        refuse(options, names_for_points_alone(), "on a mesh")
         return MeshInfo(**_spillway.mesh_info(run, paths[0], mesh_options(options, None)))
     return PointsInfo(**_spillway.points_info(run, paths[0], point_options(options, 2), fast))
 
@@ -460,10 +460,10 @@ def check(
     path = as_path(mesh, "mesh")
     source = None
     if points is None:
-        refuse(options, names_of_points(), "without points")
+        refuse(options, names_for_points_alone(), "without points")
     else:
         source = as_inputs(points, "points")
-        check_array(source, options)
+        check_array(source, options, keeps=("max_expansion",))
     run = make_run(options)
     how = mesh_options({"max_expansion": options.get("max_expansion")}, mesh_format)
     which = point_options(options, 2)

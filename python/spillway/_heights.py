@@ -133,7 +133,7 @@ def height(
     if ground is None and ground_class is None:
         raise InvalidArgumentError("what is the ground? Give ground_class, or ground")
     source = as_inputs(inputs)
-    check_array(source, options)
+    check_array(source, options, keeps=() if ground is None else ("max_expansion",))
     run = make_run(options)
     below = _ground(run, source, ground, ground_class, mesh_format, options)
     which = point_options(options, 0)
@@ -199,7 +199,7 @@ def _ground(
         where = "where the ground is a mesh"
         refuse(of_points, [name for name in of_points if name not in kept], where)
         return _spillway.MeshOrigin(points[0], mesh_options(joined, mesh_format))
-    how_read = ["skip_invalid", "max_expansion", "salvage", "keep_withheld", "skip_broken"]
+    how_read = ["skip_invalid", "salvage", "keep_withheld", "skip_broken"]
     if ground is None:
         how_read += ["input_format", "columns"]
     joined.update({name: options.get(name) for name in how_read if options.get(name)})

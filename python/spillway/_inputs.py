@@ -14,7 +14,7 @@ from ._options import (
     as_word,
     mesh_options,
     names_for,
-    names_of_points,
+    names_for_points_alone,
     point_options,
     refuse,
     triangulate_options,
@@ -62,10 +62,13 @@ def as_dimension(
     return int(dim)
 
 
-def check_array(inputs: list[bytes] | Floats, options: Mapping[str, Any]) -> None:
-    """Refuse options of files where there is an array."""
+def check_array(
+    inputs: list[bytes] | Floats, options: Mapping[str, Any], *, keeps: tuple[str, ...] = ()
+) -> None:
+    """Refuse options of files where there is an array, but those that a mesh beside it has."""
     if not isinstance(inputs, list):
-        of_files = [n for n in names_for("points") if n not in ("crs", "force_crs")]
+        allowed = {"crs", "force_crs", *keeps}
+        of_files = [n for n in names_for("points") if n not in allowed]
         refuse(options, of_files, "on an array, of which NumPy selects rows")
 
 
@@ -85,7 +88,7 @@ def is_mesh(
 def check_mesh_options(options: Mapping[str, Any], *, keeps: tuple[str, ...] = ()) -> None:
     """Refuse options of points where a mesh is read, but those that it keeps."""
     allowed = {"crs", "force_crs", "max_edge", *keeps}
-    names = [n for n in [*names_of_points(), *names_for("division"), "id"] if n not in allowed]
+    names = [n for n in [*names_for_points_alone(), *names_for("division"), "id"] if n not in allowed]
     refuse(options, names, "on a mesh")
 
 

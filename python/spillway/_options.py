@@ -101,11 +101,11 @@ class ConvertOptions(FilterOptions, PlaceOptions, JoinOptions, RunOptions, total
 
 
 class InfoOptions(FilterOptions, PlaceOptions, RunOptions, total=False):
-    """Of points that are read, each file by itself."""
+    """Of points that are read, each file by itself; `max_expansion` also of a mesh."""
 
 
 class CheckOptions(FilterOptions, PlaceOptions, RunOptions, total=False):
-    """Of points that a mesh is compared with."""
+    """Of points that a mesh is compared with; `max_expansion` also of the mesh."""
 
     force_crs: bool
 
@@ -651,7 +651,7 @@ def names_for(target: str) -> list[str]:
     return [name for name, option in _OPTIONS.items() if option.target == target]
 
 
-def names_of_points() -> list[str]:
+def names_for_points_alone() -> list[str]:
     """The names of the options of points that meshes do not have."""
     return [name for name in names_for("points") if name != "max_expansion"]
 

@@ -19,9 +19,18 @@ import warnings
 
 import numpy as np
 import spillway
-from support import InFolder, bytes_of, command, degenerate_sets, hash_by_command, random_points
+from support import (
+    COMMAND,
+    InFolder,
+    bytes_of,
+    command,
+    degenerate_sets,
+    hash_by_command,
+    random_points,
+)
 
-# A block each, after numbers of 64 bits: blocks, their bytes, those of the last, compressed ones.
+# Its points are one compressed block, after four numbers of 64 bits: how many blocks there are, the
+# bytes of each, those of the last one (0: as the others), and the compressed ones.
 HOLLOW_VTU = """<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" header_type="UInt64"
  compressor="vtkLZMADataCompressor"><UnstructuredGrid><Piece NumberOfPoints="{}" NumberOfCells="1">
 <Points><DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>
@@ -257,15 +266,28 @@ class Convert(InFolder):
                 spillway.convert(inputs, "out.spp", **options)
 
     def test_blocks_of_vtu_that_expand_far_are_read_if_that_is_meant(self):
-        count = 3_000_000  # 72 MB of zeros, and one triangle
+        count = 2_900_000  # more than 64 MiB of zeros, and one triangle
         write_hollow_vtu("hollow.vtu", count)
         with self.assertRaisesRegex(spillway.BadInputError, "that is meant, raise max_expansion"):
             spillway.info("hollow.vtu")
         with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
             spillway.check("hollow.vtu", max_expansion=1000)
+        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+            spillway.check("hollow.vtu", points=random_points(9, 2), max_expansion=1000)
+        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+            spillway.height(random_points(9, 2), ground="hollow.vtu", max_expansion=1000)
+        np.save("points.npy", random_points(9, 3))
+        for words in (
+            ["convert", "hollow.vtu", "-o", "a.ply"],
+            ["dem", "hollow.vtu", "-o", "a.asc", "--resolution", "1"],
+            ["height", "points.npy", "--ground", "hollow.vtu", "-o", "a.csv"],
+        ):
+            with self.subTest(words[0]):
+                told = subprocess.run(
+                    [COMMAND, *words, "--max-expansion", "1000"], capture_output=True, text=True
+                ).stderr
+                self.assertIn("more than 1000 times as many; the file may be corrupt; if ", told)
         self.assertEqual(spillway.info("hollow.vtu", max_expansion=20000).vertices, count)
-        told = command("info", "hollow.vtu", "--json", "--max-expansion", 20000)
-        self.assertIn("3000000", told)
 
 
 class Generate(InFolder):

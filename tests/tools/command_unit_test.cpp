@@ -56,7 +56,7 @@ TEST(OptionNames, AreThoseThatThereAre) {
   CommandLine input;
   InputOptions input_options;
   add_input_options(input, input_options);
-  std::vector<std::string> known(kInputOptionNames.begin(), kInputOptionNames.end());
+  std::vector<std::string> known(kPointOptionNames.begin(), kPointOptionNames.end());
   known.emplace_back("--max-expansion");  // of meshes, too
   EXPECT_THAT(long_names(input), ::testing::UnorderedElementsAreArray(known));
   CommandLine all;

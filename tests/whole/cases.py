@@ -168,7 +168,7 @@ def random_options(rng, case):
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):
         maybe(0.2, "--id")
     extent = max((np.ptp(one.world()[:, :case.dim]) for one in case.inputs), default=0)
-    if 1e-100 < extent < 1e100 and not is_tiled:  # tiles have no vertices without a simplex
+    if 1e-100 < extent < 1e100 and not is_tiled:  # which leave out vertices without a simplex
         maybe(0.1, "--max-edge", repr(float(extent * 3 * rng.random() / n ** (1 / case.dim) + 1e-200)))
     if case.dim == 2 and all(one.world().shape[1] > 2 for one in case.inputs):
         maybe(0.3, "--heights", rng.choice(["first", "lowest", "highest", "mean"]))
@@ -185,13 +185,14 @@ def random_set(rng, command, folder, dim, most):
     return family, points, None
 
 
-SURVEY_FORMS = ("las", "las", "las", "laz", "copc")
-
-
 @functools.cache
 def reads_polygons(command):
+    """Whether the command was built with GDAL."""
     told = subprocess.run([command, "--version"], capture_output=True, text=True, check=True).stdout
     return "without GDAL" not in told
+
+
+SURVEY_FORMS = ("las", "las", "las", "laz", "copc")
 
 
 def random_case(seed, command, folder, kind="runs", most=20000):

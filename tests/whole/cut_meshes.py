@@ -24,18 +24,22 @@ def paths(case):
     """The files that a run has made, in the order of their names."""
     end = f"_vertices.{case.form}" if case.form == "npy" else f".{mesh_files.end_of(case.form)}"
     found = sorted(glob.glob(f"out/mesh*{end}"))
+    if not found:
+        raise Failed("a run has made no file")
     return [path.replace("_vertices", "") for path in found]
 
 
 def check_tile(path, mesh, side):
-    """The square of a tile, which has the centroids of all its simplices."""
+    """The square of a tile has the centroids of all its simplices, and their vertices alone."""
+    name = path.removeprefix("out/mesh_").rsplit(".", 1)[0]
+    square = np.rint(np.array(name.split("_"), float) / side)
+    if len(np.unique(mesh.simplices)) != len(mesh.vertices):
+        raise Failed("a tile with vertices of other tiles", path)
     centroids = mesh.vertices[mesh.simplices][:, :, :2].mean(axis=1)
     slack = 1e-9 * side + 1e-15 * np.abs(centroids)
-    low = np.floor((centroids - slack) / side).max(axis=0)
-    high = np.floor((centroids + slack) / side).min(axis=0)
-    if np.any(low > high):
-        raise Failed("simplices of several squares in a tile", path)
-    return tuple(low)
+    low, high = np.floor((centroids - slack) / side), np.floor((centroids + slack) / side)
+    if np.any(low > square) or np.any(high < square):
+        raise Failed("a simplex of another square", path)
 
 
 def together(case, meshes):
@@ -47,6 +51,8 @@ def together(case, meshes):
     number = number.reshape(-1)
     index = None
     if case.option("--id"):
+        if any(mesh.index is None for mesh in meshes):
+            raise Failed("no input index")
         index = np.concatenate([mesh.index for mesh in meshes])
         if np.any(index[first][number] != index):
             raise Failed("a vertex that has several input indices")
@@ -56,17 +62,15 @@ def together(case, meshes):
 
 def read(command, case):
     """The whole of the files."""
+    tiles = case.option("--tiles")
     meshes = []
     for path in paths(case):
         mesh = mesh_files.read_mesh(command, path, case.form, case.dim)
         if len(np.unique(mesh.vertices, axis=0)) != len(mesh.vertices):
             raise Failed("a file that has a vertex twice", path)
+        if tiles:
+            check_tile(path, mesh, float(tiles[1]))
         meshes.append(mesh)
-    tiles = case.option("--tiles")
-    if tiles:
-        squares = [check_tile(path, mesh, float(tiles[1])) for path, mesh in zip(paths(case), meshes)]
-        if len(set(squares)) < len(squares):
-            raise Failed("several tiles of one square", ", ".join(paths(case)))
-    elif len(meshes) != max(1, case.ranks):
-        raise Failed("another number of parts", ", ".join(paths(case)))
+    if not tiles and len(meshes) != case.ranks:
+        raise Failed("another number of parts", f"{len(meshes)}, not {case.ranks}")
     return together(case, meshes)

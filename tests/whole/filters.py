@@ -125,7 +125,8 @@ def is_within(ring, points):
 
 
 def clip(rng, world, exact):
-    """A polygon of three to five corners, some of which are points, that may cross itself."""
+    """A box, or a polygon of three to five corners that may cross itself; its corners have coordinates
+    of points if these are exact."""
     sides = [two_values(rng, world[:, axis], exact) for axis in (0, 1)]
     count = int(rng.integers(3, 6))
     if rng.random() < 0.3:
@@ -133,12 +134,13 @@ def clip(rng, world, exact):
     elif exact:
         ring = world[rng.integers(0, len(world), count), :2]
     else:
-        ring = np.array([[rng.choice(side) for side in sides] for _ in range(count)])
+        ring = np.array([[rng.uniform(*side) for side in sides] for _ in range(count)])
     outside = bool(rng.random() < 0.3)
 
     def keep(points, numbers, counts):
         return numbers[is_within(ring, points[numbers, :2]) != outside]
 
+    # GeoJSON is of longitude and latitude, unless that is overruled.
     rows = [[float(v) for v in corner] for corner in [*ring, ring[0]]]
     text = json.dumps({"type": "Polygon", "coordinates": [rows]})
     return Filter(["--clip", "clip.geojson", "--force-crs"] + ["--clip-outside"] * outside, keep,

@@ -148,7 +148,7 @@ int run(const CheckCommandOptions& options) {
   inputs.push_back(options.mesh);
   check_figures_file(options.report, inputs, "-", "the report");
   if (options.points.empty()) {
-    refuse_given(*options.app, kInputOptionNames, "without --points");
+    refuse_given(*options.app, kPointOptionNames, "without --points");
   }
   ProgressLine progress = make_progress(options.report);
   const Outcome outcome = check_input(options, progress);

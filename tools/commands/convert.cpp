@@ -220,7 +220,7 @@ void run_mesh(const ConvertCommandOptions& options, const Context& context, Prog
   if (options.inputs.size() > 1) {
     throw UsageError("several meshes do not become one: convert them one by one");
   }
-  std::vector<std::string_view> of_points(kInputOptionNames.begin(), kInputOptionNames.end());
+  std::vector<std::string_view> of_points(kPointOptionNames.begin(), kPointOptionNames.end());
   const TileChoice tiles = parse_tiles(options.tiles);
   std::erase_if(of_points, [](auto name) { return name.starts_with("--clip"); });
   if (!options.input.crs.empty() || !tiles.polygons.empty() || !options.input.clip.empty()) {

@@ -416,7 +416,7 @@ void check_point_options(const std::vector<std::string>& paths, const InfoOption
   const bool points = std::ranges::any_of(
       paths, [&](const std::string& path) { return may_be_points(path, options, context); });
   if (points) return;
-  refuse_given(*options.app, kInputOptionNames,
+  refuse_given(*options.app, kPointOptionNames,
                paths.size() == 1 ? fmt::format("on {}, which is a mesh", paths.front())
                                  : "on these files, which are meshes");
 }
@@ -427,11 +427,11 @@ int run(const InfoOptions& options) {
   ProgressLine progress = make_progress(options.report);
   const Context context(context_options(options.memory, 0, progress));
   const std::vector<std::string> paths = expand_inputs(options.files, context);
-  if (!given_options(*options.app, kInputOptionNames).empty()) {
+  if (!given_options(*options.app, kPointOptionNames).empty()) {
     check_point_options(paths, options, context);
   }
   if (options.fast) {
-    std::vector<std::string_view> filters(kInputOptionNames.begin(), kInputOptionNames.end());
+    std::vector<std::string_view> filters(kPointOptionNames.begin(), kPointOptionNames.end());
     std::erase_if(filters, [](std::string_view name) {
       return name == "--input-format" || name == "--columns" || name == "--skip-lines" ||
              name == "--separator" || name == "--decimal" || name == "--no-header";

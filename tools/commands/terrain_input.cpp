@@ -19,7 +19,7 @@ namespace spillway::command {
 namespace {
 
 void refuse_options_of_points(const TerrainOptions& options) {
-  std::vector<std::string_view> names(kInputOptionNames.begin(), kInputOptionNames.end());
+  std::vector<std::string_view> names(kPointOptionNames.begin(), kPointOptionNames.end());
   names.insert(names.end(), kTriangulationOptionNames.begin(), kTriangulationOptionNames.end());
   names.insert(names.end(), {"--dim", "--clip-bounds"});
   std::erase_if(names, [&](std::string_view name) {

@@ -47,9 +47,9 @@ struct InputOptions {
   [[nodiscard]] bool filters() const;
 };
 
-/// The names of the options that add_input_options() adds, but --max-expansion, which meshes have,
+/// The names of the options that add_input_options() adds, but --max-expansion, which is of any mesh,
 /// too.
-inline constexpr std::array<std::string_view, 26> kInputOptionNames = {
+inline constexpr std::array<std::string_view, 26> kPointOptionNames = {
     "--skip-lines",   "--separator",   "--decimal",       "--no-header", "--input-format",
     "--columns",      "--crs",         "--force-crs",     "--to-crs",    "--multiply-z",
     "--skip-invalid", "--skip-broken", "--keep-withheld", "--every",     "--keep-class",

@@ -116,10 +116,8 @@ struct MeshFormat {
   /// others do not know; null if all formats' readers do, or if it is always 0, 0, 0.
   std::optional<WorldPoint> (*unknown_origin)(InputBytes& source) = nullptr;
 
-  /// Reads the whole of a mesh.
-  Mesh (*read)(InputBytes& source) = nullptr;
-  /// The same, of a format that has compressed blocks, none of which expands_too_far().
-  Mesh (*read_compressed)(InputBytes& source, std::uint64_t max_expansion) = nullptr;
+  /// Reads the whole of a mesh, which has no compressed block that expands_too_far().
+  Mesh (*read)(InputBytes& source, std::uint64_t max_expansion) = nullptr;
   /// Reads a stream block by block.
   std::unique_ptr<MeshStreamReader> (*open_stream)(std::unique_ptr<InputBytes> source) = nullptr;
   /// Reads the whole of a table of shapes, which a library opens again by its name, so it is no

@@ -20,7 +20,7 @@ constinit const MeshFormat kGlbMesh = {
     .rounds_coordinates = true,
     .needs_regular_file = true,
     .recognises = [](std::string_view text) { return text.starts_with(glb::kMagic); },
-    .read = read_glb,
+    .read = [](InputBytes& source, std::uint64_t) { return read_glb(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_glb_writer(std::move(files.main), header);

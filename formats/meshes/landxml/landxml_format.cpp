@@ -19,7 +19,7 @@ constinit const MeshFormat kLandXmlMesh = {
     .name_tells = false,
     .reads_crs = true,
     .recognises = [](std::string_view text) { return text.find("<LandXML") != text.npos; },
-    .read = read_landxml,
+    .read = [](InputBytes& source, std::uint64_t) { return read_landxml(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_landxml_writer(std::move(files.main), header);

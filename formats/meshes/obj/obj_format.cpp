@@ -21,7 +21,7 @@ constinit const MeshFormat kObjMesh = {
     .title = "OBJ",
     .extensions = kExtensions,
     .recognises = [](std::string_view text) { return begins_with_word(text, kFirstWords); },
-    .read = read_obj,
+    .read = [](InputBytes& source, std::uint64_t) { return read_obj(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_obj_writer(std::move(files.main), header);

@@ -18,7 +18,7 @@ constinit const MeshFormat kOffMesh = {
     .title = "OFF",
     .extensions = kExtensions,
     .recognises = [](std::string_view text) { return off_kind_of_text(text).has_value(); },
-    .read = read_off,
+    .read = [](InputBytes& source, std::uint64_t) { return read_off(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_off_writer(std::move(files.main), header);

@@ -46,7 +46,7 @@ constinit const MeshFormat kPlyMesh = {
     .recognises = begins_as_ply,
     .has_simplices =
         [](InputBytes& source) { return peek_ply_header(source).simplices() != nullptr; },
-    .read = read_ply,
+    .read = [](InputBytes& source, std::uint64_t) { return read_ply(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_ply_writer(std::move(files.main), header, false);
@@ -64,7 +64,7 @@ constinit const MeshFormat kPlyAsciiMesh = {
     .holds_input_index = true,
     .held_attributes = HeldAttributes::kAll,
     .takes_colour = true,
-    .read = read_ply,
+    .read = [](InputBytes& source, std::uint64_t) { return read_ply(source); },
     .open_writer =
         [](MeshFiles files, const MeshFileHeader& header) {
           return open_ply_writer(std::move(files.main), header, true);

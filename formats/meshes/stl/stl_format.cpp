@@ -23,7 +23,7 @@ constinit const MeshFormat kStlMesh = {
           return text.starts_with(kStlOrigin) || looks_like_ascii_stl(text);
         },
     .unknown_origin = stl_origin,
-    .read = read_stl,
+    .read = [](InputBytes& source, std::uint64_t) { return read_stl(source); },
     .open_block_writer =
         [](MeshFiles files, const MeshStreamHeader& header) {
           return open_stl_writer(std::move(files.main), header);

@@ -27,7 +27,7 @@ constinit const MeshFormat kVtuMesh = {
         [](std::string_view text) {
           return text.starts_with('<') && text.find("<VTKFile") != text.npos;
         },
-    .read_compressed =
+    .read =
         [](InputBytes& source, std::uint64_t max_expansion) {
           check_is_no_pvtu(source);
           return read_vtu(source, max_expansion);

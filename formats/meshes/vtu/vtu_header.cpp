@@ -60,7 +60,7 @@ Value value_of(const VtuTags& tags, std::string_view key,
 
 }  // namespace
 
-VtuCoding vtu_coding(const VtuTags& tags) {
+VtuCoding vtu_coding(const VtuTags& tags, std::uint64_t max_expansion) {
   const std::string_view type = tags.tag().attribute("type");
   if (type != "UnstructuredGrid") {
     tags.fail(
@@ -69,7 +69,7 @@ VtuCoding vtu_coding(const VtuTags& tags) {
                     quoted(type)));
   }
   return {value_of(tags, "byte_order", kByteOrders), value_of(tags, "header_type", kLengthTypes),
-          value_of(tags, "compressor", kCompressors)};
+          value_of(tags, "compressor", kCompressors), max_expansion};
 }
 
 VtuArray vtu_array(const VtuTags& tags, std::string_view name) {

@@ -9,6 +9,7 @@
 
 #include "formats/bytes/number_type.h"
 #include "formats/compression/block_decompress.h"
+#include "formats/compression/expansion.h"
 #include "formats/meshes/vtu/vtu_tags.h"
 
 namespace spillway::formats {
@@ -19,7 +20,7 @@ struct VtuCoding {
   bool swaps = false;                             ///< bytes are in the other order
   NumberType length_type = NumberType::kUint32;   ///< of the numbers that precede an array
   std::optional<BlockCompression> compression{};  ///< of the blocks of an array
-  std::uint64_t max_expansion = 1;                ///< of which none expands_too_far()
+  std::uint64_t max_expansion = kMostExpansion;   ///< beyond which a block expands_too_far()
 };
 
 /// Where the values of an array are.
@@ -35,8 +36,8 @@ struct VtuArray {
   std::uint64_t offset = 0;    ///< of appended ones: from the first byte of the appended data
 };
 
-/// What the tag VTKFile says. Throws Failure for what is not read.
-VtuCoding vtu_coding(const VtuTags& tags);
+/// What the tag VTKFile says, beside the given limit. Throws Failure for what is not read.
+VtuCoding vtu_coding(const VtuTags& tags, std::uint64_t max_expansion);
 
 /// What the tag DataArray says. Throws Failure for what is malformed.
 VtuArray vtu_array(const VtuTags& tags, std::string_view name);

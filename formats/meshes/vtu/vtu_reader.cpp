@@ -76,8 +76,7 @@ class VtuReader {
   void read_tag() {
     const std::string_view name = tags_.tag().name;
     if (name == "VTKFile") {
-      coding_ = vtu_coding(tags_);
-      coding_->max_expansion = max_expansion_;
+      coding_ = vtu_coding(tags_, max_expansion_);
     } else if (name == "Piece") {
       read_piece();
     } else if (name == "DataArray") {

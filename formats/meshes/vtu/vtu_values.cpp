@@ -101,7 +101,7 @@ class BlockContent final : public VtuContent {
     if (expands_too_far(size, wanted, max_expansion_)) {
       fail_in_vtu(bytes_.input(),
                   fmt::format("block {} of an array is said to hold {} bytes in {}, more than {} "
-                              "times as many",
+                              "times as many; the file may be corrupt",
                               block_, wanted, size, max_expansion_),
                   Remedy::kExpansion);
     }

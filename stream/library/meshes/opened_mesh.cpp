@@ -66,18 +66,18 @@ MeshStreamReader& OpenedMesh::reader(RunWatch& watch, bool all_totals) {
     return *reader_;
   }
   if (mesh_) {
-    pass_on(*std::exchange(mesh_, std::nullopt), all_totals);
+    make_reader(*std::exchange(mesh_, std::nullopt), all_totals);
     return *reader_;
   }
   watch.begin("read mesh", "simplices");
   Mesh mesh = stream_ ? collect_mesh(*stream_) : read_whole();
   stream_.reset();
-  pass_on(std::move(mesh), all_totals);
+  make_reader(std::move(mesh), all_totals);
   watch.end(reader_->totals().simplices);
   return *reader_;
 }
 
-void OpenedMesh::pass_on(Mesh mesh, bool all_totals) {
+void OpenedMesh::make_reader(Mesh mesh, bool all_totals) {
   const bool had_lattice = mesh.header.lattice.has_value();
   reader_ = std::make_unique<WholeMesh>(std::move(mesh), path_, all_totals);
   drops_lattice_ = had_lattice && !reader_->header().lattice;

@@ -72,7 +72,7 @@ class OpenedMesh final : public spillway::MeshSource {
   /// Of a pipe.
   void keep_copy(RunWatch& watch);
   /// Makes a whole mesh what reader() opens.
-  void pass_on(Mesh mesh, bool all_totals);
+  void make_reader(Mesh mesh, bool all_totals);
   MeshStreamReader& public_reader();
 
   std::string path_;

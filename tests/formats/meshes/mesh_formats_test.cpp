@@ -49,8 +49,7 @@ TEST(MeshFormatTable, NoExtensionIsOfTwoFormats) {
 
 TEST(MeshFormatTable, EachFormatIsReadInOneWayAndWrittenInOne) {
   for (const MeshFormat* const format : mesh_formats()) {
-    const int ways = (format->read != nullptr ? 1 : 0) +
-                     (format->read_compressed != nullptr ? 1 : 0) + (format->is_stream() ? 1 : 0) +
+    const int ways = (format->read != nullptr ? 1 : 0) + (format->is_stream() ? 1 : 0) +
                      (format->is_table() ? 1 : 0) + (format->file_set != nullptr ? 1 : 0);
     EXPECT_EQ(ways, 1) << format->name;
     EXPECT_NE(format->open_writer != nullptr, format->open_block_writer != nullptr) << format->name;

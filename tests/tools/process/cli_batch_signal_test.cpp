@@ -20,6 +20,7 @@ namespace spillway::test {
 namespace {
 
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 void sleep_for(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
@@ -112,11 +113,11 @@ TEST_F(SignalledBatch, WhoseWholeGroupIsSignalledSaysSoOnce) {
 TEST_F(SignalledBatch, EndsJobsThatAreHeld) {
   const pid_t process = space.start(arguments());
   std::vector<pid_t> children;
-  for (int i = 0; i < 2000 && children.empty(); ++i) {
+  for (int i = 0; i < 2000 && !(has_begun() && children.size() == 4); ++i) {
     sleep_for(5);
     children = children_of(process);
   }
-  EXPECT_FALSE(children.empty());
+  EXPECT_THAT(children, SizeIs(4));
   for (const pid_t child : children) kill(child, SIGSTOP);
   kill(process, SIGTERM);
   EXPECT_EQ(wait_for_exit(process), 128 + SIGTERM);

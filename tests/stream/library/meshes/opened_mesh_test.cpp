@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spillway/convert.h>
 
 #include <cmath>
 #include <fstream>
@@ -195,20 +196,19 @@ void move_first_vertex(const std::string& path) {
   file.write(reinterpret_cast<const char*>(&x), sizeof x);
 }
 
-TEST_F(OpenedMeshTest, TellsOfALatticeThatAVertexIsNotOn) {
+TEST_F(OpenedMeshTest, ALatticeThatAVertexIsNotOnIsLeftOutWithANotice) {
   std::vector<std::string> notices;
   ContextOptions telling = options(phases_);
   telling.warning = [&](std::string_view text) { notices.emplace_back(text); };
   const Context context(telling);
   const std::string path = write("a.ply");
-  OpenedMesh good(path, {}, context);
-  EXPECT_TRUE(good.reader(watch_, true).header().lattice);
-  good.tell_of_dropped_lattice();
+  const std::string written = files_.path("b.spm");
+  convert(*open_mesh(path, {}, context), *create_mesh(written, {}, context), context);
+  EXPECT_TRUE(open_mesh(written, {}, context)->header().lattice);
   EXPECT_THAT(notices, IsEmpty());
   move_first_vertex(path);
-  OpenedMesh moved(path, {}, context);
-  EXPECT_FALSE(moved.reader(watch_, true).header().lattice);
-  moved.tell_of_dropped_lattice();
+  convert(*open_mesh(path, {}, context), *create_mesh(written, {}, context), context);
+  EXPECT_FALSE(open_mesh(written, {}, context)->header().lattice);
   EXPECT_THAT(notices, ElementsAre(HasSubstr("a.ply: a vertex is not on the lattice")));
 }
 
