@@ -268,13 +268,13 @@ class Convert(InFolder):
     def test_blocks_of_vtu_that_expand_far_are_read_if_that_is_meant(self):
         count = 2_900_000  # more than 64 MiB of zeros, and one triangle
         write_hollow_vtu("hollow.vtu", count)
-        with self.assertRaisesRegex(spillway.BadInputError, "that is meant, raise max_expansion"):
+        with self.assertRaisesRegex(spillway.Error, "that is meant, raise max_expansion"):
             spillway.info("hollow.vtu")
-        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+        with self.assertRaisesRegex(spillway.Error, "more than 1000 times as many"):
             spillway.check("hollow.vtu", max_expansion=1000)
-        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+        with self.assertRaisesRegex(spillway.Error, "more than 1000 times as many"):
             spillway.check("hollow.vtu", points=random_points(9, 2), max_expansion=1000)
-        with self.assertRaisesRegex(spillway.BadInputError, "more than 1000 times as many"):
+        with self.assertRaisesRegex(spillway.Error, "more than 1000 times as many"):
             spillway.height(random_points(9, 2), ground="hollow.vtu", max_expansion=1000)
         np.save("points.npy", random_points(9, 3))
         for words in (

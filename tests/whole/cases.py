@@ -155,7 +155,6 @@ def random_options(rng, case):
     maybe(0.3, "--children", rng.choice([2, 3, 4, 8, 1024]))
     maybe(0.3, "--division", rng.choice(["least-border", "longest", "cycling", "constant"]))
     maybe(0.1, "--kernel", rng.choice(["spillway", "cgal"]) if case.dim < 4 else "spillway")
-    maybe(0.5 if n < 500_000 else 1, "--memory", {2: "32M", 3: "96M", 4: "128M"}[case.dim])
     maybe(0.2, "--no-trust-headers")
     if case.ranks and not case.pipe_out and case.form in cut_meshes.IN_PARTS:
         maybe(0.4, "--parts")
@@ -163,6 +162,8 @@ def random_options(rng, case):
         side = cut_meshes.random_side(rng, case)
         maybe(0.15 if side else 0, "--tiles", side)
     is_tiled = any(option[0] == "--tiles" for option in chosen)
+    least = {2: "40M", 3: "112M"} if is_tiled else {2: "32M", 3: "96M", 4: "128M"}
+    maybe(0.5 if n < 500_000 else 1, "--memory", least[case.dim])
     if not (case.pipe_in or case.pipe_out or is_tiled):
         maybe(0.1, "--resume", "state", "--checkpoint-every", "0.001")
     if case.form in ("spm", "npy", "ply", "ply-ascii", "vtu"):

@@ -1,5 +1,6 @@
 #include "formats/meshes/glb/glb_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/glb/glb_reader.h"

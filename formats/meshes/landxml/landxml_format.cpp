@@ -1,5 +1,6 @@
 #include "formats/meshes/landxml/landxml_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/landxml/landxml_reader.h"

@@ -1,5 +1,6 @@
 #include "formats/meshes/obj/obj_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/bytes/fields.h"

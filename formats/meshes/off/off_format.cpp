@@ -1,5 +1,6 @@
 #include "formats/meshes/off/off_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/off/off_kind.h"

@@ -1,5 +1,6 @@
 #include "formats/meshes/ply/ply_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/ply/ply_reader.h"

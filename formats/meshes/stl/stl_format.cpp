@@ -1,5 +1,6 @@
 #include "formats/meshes/stl/stl_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/stl/stl_reader.h"

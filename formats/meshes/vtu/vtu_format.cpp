@@ -1,5 +1,6 @@
 #include "formats/meshes/vtu/vtu_format.h"
 
+#include <cstdint>
 #include <utility>
 
 #include "formats/meshes/vtu/vtu_index.h"

@@ -148,7 +148,7 @@ constinit const MeshFormat kToyMesh = {
     .title = "TOY",
     .extensions = kToyExtensions,
     .recognises = [](std::string_view text) { return text.starts_with("TOY "); },
-    .read = read_toy,
+    .read = [](InputBytes& source, std::uint64_t) { return read_toy(source); },
     .open_writer = [](MeshFiles files,
                       const MeshFileHeader& header) -> std::unique_ptr<MeshWriter> {
       return std::make_unique<ToyWriter>(std::move(files.main), header);
