@@ -279,7 +279,7 @@ class Convert(InFolder):
         np.save("points.npy", random_points(9, 3))
         for words in (
             ["convert", "hollow.vtu", "-o", "a.ply"],
-            ["dem", "hollow.vtu", "-o", "a.asc", "--resolution", "1"],
+            ["volume", "hollow.vtu", "--level", "0"],
             ["height", "points.npy", "--ground", "hollow.vtu", "-o", "a.csv"],
         ):
             with self.subTest(words[0]):
