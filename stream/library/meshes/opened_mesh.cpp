@@ -96,8 +96,8 @@ void OpenedMesh::warn(const std::string& notice) const {
 }
 
 void OpenedMesh::tell_of_dropped_lattice() const {
-  if (drops_lattice_)
-    warn("a vertex is not on the lattice that the file tells of, which is left out");
+  if (!drops_lattice_) return;
+  warn("a vertex is not on the lattice that the file tells of, which is left out");
 }
 
 MeshStreamReader& OpenedMesh::stream() const {
