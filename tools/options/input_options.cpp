@@ -109,7 +109,7 @@ void add_input_options(CommandLine& app, InputOptions& options) {
 
 std::string parse_crs(std::string_view text) {
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 20;
-  const std::string crs(text);
+  std::string crs(text);
   if (looks_like_wkt(crs) || crs.starts_with("EPSG:")) return crs;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(crs, ignored)) {
