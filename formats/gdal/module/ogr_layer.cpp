@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <ogrsf_frmts.h>
+#include <sys/resource.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -11,10 +12,13 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -60,11 +64,20 @@ OGRwkbGeometryType geometry_of(VectorContent content) {
   }
 }
 
-/// Whether nothing more fits on the disk where a file lies.
-bool disk_is_full(const std::string& path) {
+/// Bytes that still fit on the disk where a file lies, as far as that is known.
+std::uint64_t free_bytes(const std::string& path) {
   struct statvfs disk {};
-  if (::statvfs(path.c_str(), &disk) != 0) return false;
-  return (::geteuid() == 0 ? disk.f_bfree : disk.f_bavail) == 0;
+  if (::statvfs(path.c_str(), &disk) != 0) return std::numeric_limits<std::uint64_t>::max();
+  return (::geteuid() == 0 ? disk.f_bfree : disk.f_bavail) * std::uint64_t{disk.f_frsize};
+}
+
+bool disk_is_full(const std::string& path) { return free_bytes(path) == 0; }
+
+/// Bytes that a file may have.
+std::uint64_t largest_file() {
+  rlimit limit{};
+  const bool known = ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return known ? limit.rlim_cur : std::numeric_limits<std::uint64_t>::max();
 }
 
 /// Whether the last word of a text file ends so.
@@ -117,6 +130,12 @@ class OgrLayer : public VectorLayer {
     in_transaction_ = file_->StartTransaction() == OGRERR_NONE;  // not every driver has them
     forget_gdal_errors();
   }
+
+  ~OgrLayer() override {
+    if (is_dxf_ && file_) drop_dxf_entities();
+  }
+  OgrLayer(const OgrLayer&) = delete;
+  OgrLayer& operator=(const OgrLayer&) = delete;
 
   void add_triangle(std::span<const WorldPoint, 3> corners) override {
     take_space(4);
@@ -182,6 +201,7 @@ class OgrLayer : public VectorLayer {
   void finish() override {
     forget_gdal_errors();
     if (in_transaction_ && file_->CommitTransaction() != OGRERR_NONE) fail(gdal_reason());
+    if (is_dxf_) check_room_for_dxf();
     file_.reset();  // closing writes what is left: only now can the disk be full
     if (gdal_failed()) fail(gdal_reason());
     if (is_text() && !ends_with(path_, is_json_ ? "}" : "EOF")) {
@@ -190,6 +210,27 @@ class OgrLayer : public VectorLayer {
   }
 
  private:
+  /// Where the driver of DXF keeps what it copies into the file as it closes that.
+  [[nodiscard]] std::string dxf_entities() const { return path_ + ".tmp"; }
+
+  /// Where the copy does not fit, the driver looks for the end of a line in bytes that it could not
+  /// read, and beyond them: it may end by a signal. Throws Failure before that.
+  void check_room_for_dxf() const {
+    constexpr std::uint64_t kBeside = std::uint64_t{64} << 10;  // header, trailer, and buffers
+    std::error_code unknown;
+    const std::uintmax_t entities = std::filesystem::file_size(dxf_entities(), unknown);
+    if (unknown) return;
+    if (entities + kBeside > free_bytes(path_)) fail("the disk is full", ENOSPC);
+    if (entities + kBeside > largest_file()) fail("it would be larger than a file may be", EFBIG);
+  }
+
+  /// Of a file that is given up: what is copied is nothing, and its room is free.
+  void drop_dxf_entities() const noexcept {
+    const std::string entities = dxf_entities();
+    const bool is_there = ::truncate(entities.c_str(), 0) == 0 && ::unlink(entities.c_str()) == 0;
+    if (is_there) std::ofstream{entities};
+  }
+
   void create_layer(const VectorLayerOptions& options) {
     OGRSpatialReference crs;
     std::vector<const char*> how = {nullptr};

@@ -189,6 +189,19 @@ TEST(BadOutput, ContoursBeyondTheSizeLimit) {
   }
 }
 
+/// GDAL's driver looks for the end of a line in what it could not read of a file that is cut off.
+TEST(BadOutput, DrawingsThatMayNotGrowEndWithAnErrorAtAnySize) {
+  if (build_lacks("GDAL")) GTEST_SKIP() << kNoGdal;
+  const Workspace work;
+  work.succeed("spillway generate -q terrain -n 20000 -o in.las");
+  for (int kibibytes = 100; kibibytes < 116; ++kibibytes) {
+    expect_failure(
+        work,
+        fmt::format("ulimit -f {}; spillway contour -q in.las -o a.dxf --interval 2", kibibytes),
+        "cannot write a.dxf");
+  }
+}
+
 TEST(BadOutput, FullDisk) {
   const Workspace work;
   const auto disk = work.folder() / "disk";
