@@ -118,6 +118,7 @@ class OgrLayer : public VectorLayer {
     if (driver == nullptr) fail("GDAL is installed without its driver " + options.driver);
     std::string header;
     if (is_dxf_) {
+      check_room_for_dxf();
       dxf_template_ = std::make_unique<DxfTemplate>(options.name, options.crs);
       header = "HEADER=" + dxf_template_->path();
     }
@@ -216,15 +217,18 @@ class OgrLayer : public VectorLayer {
   /// Where the copy does not fit, the driver looks for the end of a line in bytes that it could not
   /// read, and beyond them: it may end by a signal. Throws Failure before that.
   void check_room_for_dxf() const {
-    constexpr std::uint64_t kBeside = std::uint64_t{64} << 10;  // header, trailer, and buffers
+    constexpr std::uint64_t kBeside = std::uint64_t{32} << 10;  // header, trailer, and buffers
     std::error_code unknown;
     const std::uintmax_t entities = std::filesystem::file_size(dxf_entities(), unknown);
-    if (unknown) return;
-    if (entities + kBeside > free_bytes(path_)) fail("the disk is full", ENOSPC);
-    if (entities + kBeside > largest_file()) fail("it would be larger than a file may be", EFBIG);
+    const std::uint64_t needed = (unknown ? 0 : entities) + kBeside;
+    if (needed > free_bytes(std::filesystem::path(path_).parent_path())) {
+      fail("the disk is full", ENOSPC);
+    }
+    if (needed > largest_file()) fail("the limit of a file's size is too small (ulimit -f)", EFBIG);
   }
 
-  /// Of a file that is given up: what is copied is nothing, and its room is free.
+  /// Of a file that is given up: what is copied is nothing, and its room is free. The driver still
+  /// writes what it has in its buffer, to the file that has lost its name.
   void drop_dxf_entities() const noexcept {
     const std::string entities = dxf_entities();
     const bool is_there = ::truncate(entities.c_str(), 0) == 0 && ::unlink(entities.c_str()) == 0;
@@ -303,6 +307,7 @@ class OgrLayer : public VectorLayer {
     if (layer_->CreateFeature(&feature) != OGRERR_NONE || (is_dxf_ && gdal_failed())) {
       // GDAL's driver for GeoJSON refuses nothing but places.
       if (is_json_) fail_for_place(gdal_reason());
+      if (disk_is_full(path_)) fail("the disk is full", ENOSPC);
       fail(gdal_reason());
     }
     ++features_;

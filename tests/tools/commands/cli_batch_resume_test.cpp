@@ -7,12 +7,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/test_paths.h"
+#include "tests/tools/child_processes.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::test {
@@ -62,9 +62,7 @@ class ResumedBatch : public ::testing::Test {
       ASSERT_FALSE(space.has("out/a.spm")) << "it was too fast to be killed";
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", batch));
-    std::vector<pid_t> jobs;
-    for (pid_t child = 0; children >> child;) jobs.push_back(child);
+    const std::vector<pid_t> jobs = children_of(batch);
     kill(batch, signal);
     if (signal == SIGKILL) {
       for (const pid_t job : jobs) kill(job, SIGKILL);

@@ -7,13 +7,13 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/test_paths.h"
+#include "tests/tools/child_processes.h"
 #include "tests/tools/command_runner.h"
 
 namespace spillway::test {
@@ -24,13 +24,6 @@ using ::testing::SizeIs;
 
 void sleep_for(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
-}
-
-std::vector<pid_t> children_of(pid_t process) {
-  std::ifstream file(fmt::format("/proc/{0}/task/{0}/children", process));
-  std::vector<pid_t> children;
-  for (pid_t child = 0; file >> child;) children.push_back(child);
-  return children;
 }
 
 /// A workspace with four files that take a while, and a folder for temporary ones.
