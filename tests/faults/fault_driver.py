@@ -136,12 +136,15 @@ class Run:
         within = folder / environment.pop("FAULT_FOLDER", "")
         injected = {"LD_PRELOAD": family.options.injector, "FAULT_FOLDER": str(within),
                     "TMPDIR": str(folder / "tmp"), **environment}
-        try:
-            ended = subprocess.run(command_with_fault(family, injected), cwd=folder,
-                                   env={**os.environ, **ROOT_MAY}, capture_output=True, timeout=60)
-            self.code, self.text = ended.returncode, ended.stderr.decode(errors="replace")
-        except subprocess.TimeoutExpired:
-            self.code, self.text = None, "does not end"
+        # Runs of mpirun that begin and end at once must not share a folder, which one of them removes.
+        with tempfile.TemporaryDirectory(prefix="mpi-") as session:
+            around = {**os.environ, **ROOT_MAY, "OMPI_MCA_orte_tmpdir_base": session}
+            try:
+                ended = subprocess.run(command_with_fault(family, injected), cwd=folder, env=around,
+                                       capture_output=True, timeout=60)
+                self.code, self.text = ended.returncode, ended.stderr.decode(errors="replace")
+            except subprocess.TimeoutExpired:
+                self.code, self.text = None, "does not end"
         counts = folder / "counts"
         self.counts = counts.read_text() if counts.exists() else ""
         counts.unlink(missing_ok=True)
